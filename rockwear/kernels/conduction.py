@@ -1,0 +1,494 @@
+"""Heat in a network of particles: each particle one temperature, each contact one conductance.
+
+The lumped balance of P eqs. 32-35 (M eqs. 7.1-7.3), advanced by the explicit forward Euler scheme of P eq. 54.
+M stands for the monograph of 2003, P for the paper on dredging of 2014 (PHYSICS.md). Two dimensional models are
+meant per metre of thickness.
+"""
+import math
+
+import numpy as np
+from scipy.sparse import csr_matrix, diags
+from scipy.sparse.csgraph import connected_components
+from scipy.sparse.linalg import ArpackNoConvergence, eigsh, splu
+from scipy.spatial import ConvexHull, Voronoi
+
+from rockwear.kernels.checks import ParameterError, not_negative, positive, require
+
+STEFAN_BOLTZMANN = 5.670374419e-8  # W/(m^2 K^4)
+
+# Euler steps of half the stable one. Up to there no node passes the mean of its neighbours, so a peak never
+# overshoots and no mode changes its sign; and the error in time of the long waves stays at the size of the
+# network's error in space (on a chain they nearly cancel: a dt/l^2 = 1/4 against 1/6 for the best).
+STEP_FRACTION = 0.5
+
+_DENSE = 100  # nodes up to which a dense eigenvalue is quicker than Lanczos
+_LANCZOS_TOLERANCE = 1e-5
+_STATE = ("capacity", "temperature", "edges", "conductance", "fixed", "power", "convection", "ambient", "radiation",
+          "surroundings", "balance")
+_BOOK = ("generated", "convected", "radiated", "into_fixed", "removed")
+
+
+class HeatNetwork:
+    """Particles that store heat, joined by contacts that conduct it.
+
+        C_i dT_i/dt = P_i - sum_j H_ij (T_i - T_j) - hA_i (T_i - Ta_i) - sigma eA_i (T_i^4 - Ts_i^4)
+
+    P eqs. 32-35 and 42 (M eqs. 7.1-7.3), with the radiation of M 7.2 written out.
+
+    Parameters (keyword only)
+    capacity     (n,) m*c of each particle, J/K, greater than 0
+    edges        (m, 2) int, the two particles of each contact; contacts given twice conduct twice
+    conductance  (m,) or scalar, H of P eq. 35, W/K, at least 0
+    temperature  (n,) or scalar, K. Without radiation the equations are linear, and a difference of temperature
+                 serves as well.
+
+    Wherever `nodes` are asked for, an index, a list of indices or a boolean mask over all n is accepted, each node
+    at most once; the values that go with them are scalars or one a node. Every broken rule raises ParameterError.
+    """
+
+    def __init__(self, *, capacity, edges, conductance, temperature):
+        self._capacity = np.atleast_1d(_array("capacity", capacity, "J/K")).copy()
+        require(self._capacity.ndim == 1 and self._capacity.size > 0, "capacity", self._capacity.shape,
+                "one number a node", "shape")
+        _refuse("capacity", self._capacity, self._capacity <= 0, "greater than 0", "J/K")
+        n = self._capacity.size
+        self._keep(_spread("temperature", temperature, n, "K").copy())
+        self._fixed = np.zeros(n, bool)
+        self._power = np.zeros(n)
+        self._convection, self._ambient = np.zeros(n), np.zeros(n)
+        self._radiation, self._surroundings = np.zeros(n), np.zeros(n)
+        self._balance = dict.fromkeys(_BOOK, 0.0)
+        self.rewire(edges=edges, conductance=conductance)
+
+    # ---- what there is
+
+    @property
+    def temperature(self):
+        """(n,) K, read only; a removed node keeps its last temperature."""
+        return self._temperature
+
+    @property
+    def capacity(self):
+        """(n,) J/K, a copy; 0 marks a removed node."""
+        return self._capacity.copy()
+
+    @property
+    def present(self):
+        """(n,) bool, False where a node was removed."""
+        return self._capacity > 0
+
+    @property
+    def heat_content(self):
+        """Heat of all present nodes, sum C_i T_i, J, counted from 0 K."""
+        return float(self._capacity @ self._temperature)
+
+    @property
+    def balance(self):
+        """The heat the network has gained since its making, J, by its way in; a loss is negative.
+
+            generated   from source() and add_heat()
+            convected   from the ambient of convect()
+            radiated    from the surroundings of radiate()
+            into_fixed  supplied to hold the nodes of fix() at their temperature
+            removed     minus the heat that left with remove()
+
+        heat_content has changed by the sum of these, to round-off. Conduction moves heat from node to node and so
+        has no entry.
+        """
+        return dict(self._balance)
+
+    # ---- what is prescribed
+
+    def fix(self, nodes, kelvin):
+        """Hold `nodes` at the temperature `kelvin`, from now on (M eq. 7.4)."""
+        nodes = self._nodes(nodes)
+        kelvin = _spread("kelvin", kelvin, nodes.size, "K")
+        temperature = self._temperature.copy()
+        self._balance["into_fixed"] += float(self._capacity[nodes] @ (kelvin - temperature[nodes]))
+        temperature[nodes] = kelvin
+        self._fixed[nodes] = True
+        self._keep(temperature)
+        self._prepare()
+
+    def source(self, nodes, watt):
+        """Set the heat power fed into `nodes`, W, in place of what was set for them before (Q_ext of P eq. 33)."""
+        nodes = self._nodes(nodes)
+        self._power[nodes] = _spread("watt", watt, nodes.size, "W")
+
+    def convect(self, nodes, watt_per_kelvin, ambient):
+        """Set the convection of `nodes`, in place of what was set for them before (Newton's law, P eq. 42).
+
+        watt_per_kelvin  coefficient times free area, h*A, W/K, at least 0
+        ambient          temperature of the medium, K
+        """
+        nodes = self._nodes(nodes)
+        coefficient = _spread("watt_per_kelvin", watt_per_kelvin, nodes.size, "W/K")
+        _refuse("watt_per_kelvin", coefficient, coefficient < 0, "at least 0", "W/K")
+        self._ambient[nodes] = _spread("ambient", ambient, nodes.size, "K")
+        self._convection[nodes] = coefficient
+        self._prepare()
+
+    def radiate(self, nodes, area_times_emissivity, ambient):
+        """Set the radiation of `nodes`, sigma*e*A*(T^4 - Ts^4), in place of what was set for them before (M 7.2).
+
+        area_times_emissivity  free area times emissivity, m^2, at least 0
+        ambient                temperature of the surroundings, K, at least 0; here temperatures are absolute
+        """
+        nodes = self._nodes(nodes)
+        area = _spread("area_times_emissivity", area_times_emissivity, nodes.size, "m^2")
+        _refuse("area_times_emissivity", area, area < 0, "at least 0", "m^2")
+        surroundings = _spread("ambient", ambient, nodes.size, "K")
+        _refuse("ambient", surroundings, surroundings < 0, "at least 0", "K")
+        _refuse("temperature", self._temperature[nodes], self._temperature[nodes] < 0, "at least 0", "K")
+        self._surroundings[nodes] = surroundings
+        self._radiation[nodes] = area
+
+    def add_heat(self, joules_by_node):
+        """Put `joules_by_node`, (n,) J, in at once (friction gathered since the last visit, P eq. 36): `generated`.
+
+        What falls on a fixed node is taken up by whatever holds it. A removed node can take none.
+        """
+        joules = _array("joules_by_node", joules_by_node, "J")
+        require(joules.shape == self._capacity.shape, "joules_by_node", joules.shape, "one number a node", "shape")
+        _refuse("joules_by_node", joules, (self._capacity == 0) & (joules != 0), "0 at a removed node", "J")
+        self._balance["generated"] += float(joules.sum())
+        self._balance["into_fixed"] -= float(joules[self._fixed].sum())
+        self._keep(self._temperature + joules * self._response)
+
+    def rewire(self, *, edges, conductance):
+        """Replace all contacts: `edges` (m, 2) int and `conductance` (m,) or scalar, W/K, as at the making."""
+        edges = _edges(edges, self._capacity.size)
+        conductance = _spread("conductance", conductance, len(edges), "W/K").copy()
+        _refuse("conductance", conductance, conductance < 0, "at least 0", "W/K")
+        gone = self._capacity[edges] == 0
+        require(not gone.any(), "edges", int(edges[gone][0]) if gone.any() else None, "between nodes still present")
+        self._wire(edges, conductance)
+
+    def remove(self, nodes):
+        """Take `nodes` out with their contacts, sources and surfaces; return the heat they carry, sum C*T, J.
+
+        The heat is booked as `removed`. The other nodes keep their indices.
+        """
+        nodes = self._nodes(nodes)
+        carried = float(self._capacity[nodes] @ self._temperature[nodes])
+        self._balance["removed"] -= carried
+        for values in (self._capacity, self._power, self._convection, self._radiation):
+            values[nodes] = 0.0
+        self._fixed[nodes] = False
+        stays = (self._capacity[self._edges] > 0).all(axis=1)
+        self._wire(self._edges[stays], self._conductance[stays])
+        return carried
+
+    # ---- how it goes on
+
+    def stable_step(self):
+        """Longest stable step of the Euler scheme, s: 2 / lambda_max(C^-1 K); inf where nothing can flow.
+
+        K is the conduction matrix of the nodes that are not fixed plus hA on its diagonal. The eigenvalue is that
+        of C^-1/2 K C^-1/2. Radiation adds the largest 4 sigma eA T^3 / C at the temperatures of now (or of the
+        surroundings, where hotter), a bound from above (Weyl). P eqs. 56-58 estimate the same limit from l^2/(2a).
+        """
+        if self._linear_rate is None:
+            self._linear_rate = self._largest_rate()
+        return _step_of(self._linear_rate + self._radiative_rate())
+
+    def advance(self, duration, step=None):
+        """Let `duration`, s, pass in equal Euler steps (P eq. 54); return their number.
+
+        step  longest step allowed, s; by default STEP_FRACTION of the stable one. One above the stable step is
+              refused with ParameterError.
+        Where radiation becomes stiffer as a node heats up, the rest is divided anew.
+        """
+        duration = not_negative("duration", duration, "s")
+        if step is not None:
+            step = positive("step", step, "s")
+            if step > _step_of(self._gershgorin + self._radiative_rate()):
+                stable = self.stable_step()
+                require(step <= stable, "step", step, f"at most the stable step, {stable:g}", "s")
+        left, count = self._divide(duration, step), 0
+        while left:
+            dt = duration / left
+            self._euler(dt)
+            left, count, duration = left - 1, count + 1, duration - dt
+            if left and self._radiation.any():
+                left = max(left, self._divide(duration, step))
+        return count
+
+    def steady_state(self):
+        """Temperatures that no longer change, (n,) K, with the sources, surfaces and fixed nodes of now.
+
+        A part of the network that neither is fixed anywhere nor convects or radiates keeps its heat; ParameterError
+        if sources feed such a part. Radiation is solved by Newton's iteration.
+        """
+        free = self._response > 0
+        count, part = connected_components(self._conduction, directed=False)
+        holds = self._fixed | (self._convection > 0) | (self._radiation > 0)
+        held = np.bincount(part, holds, count) > 0
+        net = np.bincount(part, self._power, count)
+        gross = np.bincount(part, abs(self._power), count)
+        drifts = ~held & (abs(net) > 1e-12 * gross)
+        require(not drifts.any(), "source", float(net[drifts][0]) if drifts.any() else 0.0,
+                "0 in sum where no node is fixed, convects or radiates", "W")
+
+        # A part that keeps its heat has its temperature only up to a constant: one node is held for the solution,
+        # then the part is shifted to its own heat.
+        pinned = np.unique(part, return_index=True)[1][~held]
+        free[pinned] = False
+        free = np.flatnonzero(free)
+        temperature = self._temperature.copy()
+        hottest = max(1.0, abs(temperature).max())
+        if self._radiation.any():  # from below the first step may shoot far up, from above it cannot
+            temperature[free] = hottest = max(hottest, self._surroundings.max())
+        linear = self._conduction + diags(self._convection)
+        for _ in range(200 if free.size else 0):
+            stiffness = 4 * STEFAN_BOLTZMANN * self._radiation * temperature**3
+            jacobian = (linear + diags(stiffness)).tocsc()[free][:, free]
+            change = _factorised(jacobian).solve(self._gains(temperature)[free])
+            temperature[free] += change
+            if not self._radiation.any() or abs(change).max() <= 1e-12 * hottest:
+                break
+        kept = np.bincount(part, self._capacity * self._temperature, count)
+        now = np.bincount(part, self._capacity * temperature, count)
+        capacity = np.bincount(part, self._capacity, count)
+        shift = np.divide(kept - now, capacity, out=np.zeros(count), where=~held & (capacity > 0))
+        return temperature + shift[part]
+
+    def state(self):
+        """All that restore() needs, a dict of new numpy arrays."""
+        kept = {name: np.array(getattr(self, "_" + name)) for name in _STATE if name != "balance"}
+        return {**kept, "balance": np.array([self._balance[name] for name in _BOOK])}
+
+    def restore(self, state):
+        """Take up a `state()` of a network of as many nodes; what follows is equal bit for bit."""
+        require(set(state) == set(_STATE), "state", sorted(state), f"with the entries {sorted(_STATE)}")
+        for name in _STATE:
+            shape, expected = np.shape(state[name]), np.shape(getattr(self, "_" + name))
+            if name in ("edges", "conductance"):
+                expected = (len(state["edges"]),) + expected[1:]
+            if name == "balance":
+                expected = (len(_BOOK),)
+            require(shape == expected, f"state['{name}']", shape, f"of shape {expected}")
+        for name in ("capacity", "fixed", "power", "convection", "ambient", "radiation", "surroundings"):
+            setattr(self, "_" + name, np.array(state[name]))
+        self._balance = dict(zip(_BOOK, map(float, state["balance"])))
+        self._keep(np.array(state["temperature"]))
+        self.rewire(edges=state["edges"], conductance=state["conductance"])
+
+    # ---- inside
+
+    def _keep(self, temperature):
+        # Temperatures are replaced, never written into: what a caller holds stays as it was.
+        temperature.flags.writeable = False
+        self._temperature = temperature
+
+    def _nodes(self, nodes):
+        nodes, n = np.asarray(nodes), self._capacity.size
+        if nodes.dtype == bool:
+            require(nodes.shape == (n,), "nodes", nodes.shape, f"a mask over {n} nodes", "shape")
+            nodes = np.flatnonzero(nodes)
+        nodes = np.atleast_1d(nodes if nodes.size else nodes.astype(int))
+        require(nodes.dtype.kind in "iu" and nodes.ndim == 1, "nodes", nodes.dtype, "indices or a boolean mask")
+        _refuse("nodes", nodes, (nodes < 0) | (nodes >= n), f"between 0 and {n - 1}")
+        _refuse("nodes", nodes, self._capacity[nodes] == 0, "a node still present")
+        require(np.unique(nodes).size == nodes.size, "nodes", f"{nodes.size} nodes", "given once each")
+        return nodes
+
+    def _wire(self, edges, conductance):
+        n, (i, j) = self._capacity.size, edges.T
+        self._edges, self._conductance = edges, conductance
+        diagonal = np.bincount(i, conductance, n) + np.bincount(j, conductance, n)
+        own = np.arange(n)
+        self._conduction = csr_matrix((np.concatenate([-conductance, -conductance, diagonal]),
+                                       (np.concatenate([i, j, own]), np.concatenate([j, i, own]))), shape=(n, n))
+        self._conduction.eliminate_zeros()  # a contact of conductance 0 joins nothing
+        self._prepare()
+
+    def _prepare(self):
+        """Follow a change of the contacts, the fixed nodes or the convection."""
+        free = (self._capacity > 0) & ~self._fixed
+        self._response = np.divide(1.0, self._capacity, out=np.zeros(free.size), where=free)
+        # Gershgorin: no eigenvalue lies above the largest row sum of absolute values.
+        diagonal = self._conduction.diagonal()
+        self._gershgorin = float(((2 * diagonal + self._convection) * self._response).max())
+        self._linear_rate = None
+
+    def _largest_rate(self):
+        free = np.flatnonzero(self._response > 0)
+        if self._gershgorin == 0:
+            return 0.0
+        scale = diags(np.sqrt(self._response[free]))
+        matrix = (self._conduction + diags(self._convection)).tocsr()[free][:, free]
+        matrix = scale @ matrix @ scale
+        if free.size <= _DENSE:
+            return float(np.linalg.eigvalsh(matrix.toarray())[-1])
+        try:  # a start of fixed seed, so that a run and its repetition divide their time alike
+            start = np.random.default_rng(1).standard_normal(free.size)
+            largest = eigsh(matrix, k=1, which="LA", v0=start, tol=_LANCZOS_TOLERANCE, return_eigenvectors=False)
+            return min(float(largest[0]) * (1 + _LANCZOS_TOLERANCE), self._gershgorin)
+        except ArpackNoConvergence:
+            return self._gershgorin
+
+    def _radiative_rate(self):
+        hotter = np.maximum(self._temperature, self._surroundings)
+        return float((4 * STEFAN_BOLTZMANN * self._radiation * hotter**3 * self._response).max())
+
+    def _divide(self, duration, step):
+        """Number of steps for `duration`; the eigenvalue is asked for only if Gershgorin's bound takes several."""
+        if duration == 0:
+            return 0
+        bound = STEP_FRACTION * _step_of(self._gershgorin + self._radiative_rate())
+        if duration <= min(bound, step or bound):
+            return 1
+        steps = duration / (step or STEP_FRACTION * self.stable_step())
+        return max(1, math.ceil(steps * (1 - 1e-12)))  # what round-off adds is not worth a step
+
+    def _gains(self, temperature):
+        return (self._power - self._conduction @ temperature + self._convection * (self._ambient - temperature)
+                + STEFAN_BOLTZMANN * self._radiation * (self._surroundings**4 - temperature**4))
+
+    def _euler(self, dt):
+        temperature, book = self._temperature, self._balance
+        convected = self._convection * (self._ambient - temperature)
+        gains = self._power - self._conduction @ temperature + convected
+        if self._radiation.any():
+            radiated = STEFAN_BOLTZMANN * self._radiation * (self._surroundings**4 - temperature**4)
+            gains += radiated
+            book["radiated"] += dt * float(radiated.sum())
+        book["generated"] += dt * float(self._power.sum())
+        book["convected"] += dt * float(convected.sum())
+        book["into_fixed"] -= dt * float(gains[self._fixed].sum())
+        self._keep(temperature + dt * (gains * self._response))
+
+
+def bar_conductance(conductivity, thickness):
+    """Conductance of a contact as a bar between two centres, H = lambda*A/l = lambda*b, W/K (P eqs. 64-65).
+
+    conductivity  lambda, W/(m K), greater than 0
+    thickness     b, m, greater than 0
+
+    The bar is as wide as it is long (2r by 2r), hence no radius appears. M eq. 11.1 takes a bar only r wide and so
+    has half of it, kappa*b/2. Both leave the packing out of account: see calibrated_conductance. Raises
+    ParameterError.
+    """
+    return positive("conductivity", conductivity, "W/(m K)") * positive("thickness", thickness, "m")
+
+
+def effusivity(conductivity, density, specific_heat):
+    """Thermal effusivity e = sqrt(lambda*rho*c), W s^0.5/(m^2 K) (P eq. 40).
+
+    conductivity in W/(m K), density in kg/m^3, specific_heat in J/(kg K), each greater than 0; or ParameterError.
+    """
+    return math.sqrt(positive("conductivity", conductivity, "W/(m K)") * positive("density", density, "kg/m^3")
+                     * positive("specific_heat", specific_heat, "J/(kg K)"))
+
+
+def effusivity_share(e_i, e_j):
+    """Share of the friction heat that goes into body i, alpha = e_i/(e_i + e_j) (P eqs. 39, 41).
+
+    e_i, e_j  effusivities of the two bodies, W s^0.5/(m^2 K), greater than 0; or ParameterError.
+    """
+    e_i, e_j = positive("e_i", e_i, "W s^0.5/(m^2 K)"), positive("e_j", e_j, "W s^0.5/(m^2 K)")
+    return e_i / (e_i + e_j)
+
+
+def effective_conductivity(*, positions, edges, conductance):
+    """Conductivity of a packing of particles as one material, (d,) W/(m K), a value a direction.
+
+    positions    (n, d) m, d = 2 (conductances per metre of thickness) or 3, filling a box along the axes
+    edges        (m, 2) int
+    conductance  (m,) or scalar, W/K
+
+    For each direction the outer tenths of the specimen are held at a linear temperature and the steady state is
+    solved. Flux density and gradient are both taken from the middle 60 % in every direction, so that neither the
+    held strips nor the free sides bear on the result:
+
+        lambda = -q/g,   q = sum_i 1/2 sum_j Q_ij (x_j - x_i) / sum_i V_i,
+
+    with the heat flows Q_ij, the Voronoi volumes V_i and the gradient g of a plane fitted to the temperatures. On
+    regular lattices this is exact: sqrt(3)*H for triangles, H for squares, H/D for cubes. The sources have no such
+    formula; P (after eq. 65) asks for the relation. Raises ParameterError.
+    """
+    positions = _array("positions", positions, "m")
+    require(positions.ndim == 2 and positions.shape[1] in (2, 3), "positions", positions.shape, "(n, 2) or (n, 3)",
+            "shape")
+    n, dimension = positions.shape
+    edges = _edges(edges, n)
+    i, j = edges.T
+    conductance = _spread("conductance", conductance, len(edges), "W/K")
+    low, extent = positions.min(axis=0), np.ptp(positions, axis=0)
+    place = (positions - low) / np.where(extent > 0, extent, 1.0)
+    inner = np.flatnonzero((abs(place - 0.5) < 0.3).all(axis=1))
+    require((extent > 0).all(), "positions", extent.tolist(), "spread out in every direction", "m")
+    require(inner.size > dimension, "positions", f"{n} nodes", f"more than {dimension} in the middle of the specimen")
+    cells = Voronoi(positions)
+    regions = [cells.regions[cells.point_region[i]] for i in inner]
+    require(all(-1 not in region for region in regions), "positions", f"{n} nodes", "closed around the middle")
+    volume = sum(ConvexHull(cells.vertices[region]).volume for region in regions)
+    plane = np.column_stack([positions[inner] - positions[inner].mean(axis=0), np.ones(inner.size)])
+
+    conductivity = np.empty(dimension)
+    for axis in range(dimension):
+        network = HeatNetwork(capacity=np.ones(n), edges=edges, conductance=conductance, temperature=place[:, axis])
+        strips = abs(place[:, axis] - 0.5) >= 0.4
+        network.fix(strips, place[strips, axis])
+        temperature = network.steady_state()
+        flow = conductance * (temperature[i] - temperature[j])
+        moment = 0.5 * flow * (positions[j, axis] - positions[i, axis])
+        moved = np.bincount(edges.ravel(), np.repeat(moment, 2), n)[inner].sum()
+        gradient = np.linalg.lstsq(plane, temperature[inner], rcond=None)[0][axis]
+        require(gradient > 0, "edges", len(edges), "enough to carry heat across the specimen")
+        conductivity[axis] = -moved / volume / gradient
+    return conductivity
+
+
+def calibrated_conductance(*, positions, edges, conductance, conductivity):
+    """The conductances, all scaled by one factor, that give the packing the wanted conductivity: (m,) W/K.
+
+    The packing's own conductivity is the mean of effective_conductivity over the directions, which is proportional
+    to the conductances, so one solution settles the factor. `conductivity` in W/(m K), greater than 0; the others
+    as in effective_conductivity. Raises ParameterError.
+    """
+    conductivity = positive("conductivity", conductivity, "W/(m K)")
+    own = effective_conductivity(positions=positions, edges=edges, conductance=conductance).mean()
+    require(own > 0, "conductance", float(own), "enough to conduct across the specimen", "W/(m K)")
+    return _spread("conductance", conductance, len(edges), "W/K") * (conductivity / own)
+
+
+def _array(name, values, unit):
+    try:
+        values = np.asarray(values, float)
+    except (TypeError, ValueError):
+        raise ParameterError(name, values, "numbers", unit) from None
+    _refuse(name, values, ~np.isfinite(values), "finite", unit)
+    return values
+
+
+def _spread(name, values, size, unit):
+    values = _array(name, values, unit)
+    require(values.ndim == 0 or values.shape == (size,), name, values.shape, f"one number or {size}", "shape")
+    return np.broadcast_to(values, (size,))
+
+
+def _refuse(name, values, broken, rule, unit=""):
+    """Raise ParameterError with the first of the `values` that is `broken`."""
+    if np.any(broken):
+        raise ParameterError(name, values[broken].ravel()[0].item(), rule, unit)
+
+
+def _edges(edges, n):
+    edges = np.asarray(edges)
+    edges = edges.reshape(0, 2).astype(int) if edges.size == 0 else edges.copy()
+    require(edges.ndim == 2 and edges.shape[1] == 2, "edges", edges.shape, "(m, 2)", "shape")
+    require(edges.dtype.kind in "iu", "edges", edges.dtype, "indices")
+    _refuse("edges", edges, (edges < 0) | (edges >= n), f"between 0 and {n - 1}")
+    _refuse("edges", edges[:, 0], edges[:, 0] == edges[:, 1], "between two different nodes")
+    return edges
+
+
+def _step_of(rate):
+    return 2.0 / rate if rate > 0 else math.inf
+
+
+def _factorised(matrix):
+    # Symmetric and positive definite: no pivoting, and an ordering that keeps the symmetry.
+    return splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
