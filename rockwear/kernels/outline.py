@@ -1,0 +1,187 @@
+"""Polygons in the plane: area, perimeter, signed distance, and the outlines of cutting teeth.
+
+A polygon is an array (k, 2) of vertices in m, in order, the last joined to the first. It is simple: no two edges
+meet except neighbours at their common vertex.
+"""
+import csv
+import math
+
+import numpy as np
+
+from rockwear.kernels.checks import ParameterError, finite, not_negative, positive, require
+
+ARC_CHORD_ERROR = 1e-3  # sagitta of the chords that replace an arc, as a fraction of its radius
+CHUNK = 2_000_000  # point-edge pairs looked at together: some 100 MB of temporaries
+
+
+def _cross(a, b):
+    return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
+
+
+def signed_area(polygon):
+    """Area (m2) by the shoelace formula, ½ Σ (x_i y_{i+1} − x_{i+1} y_i): positive for counter-clockwise vertices."""
+    # relative to one vertex, so that a small polygon far from the origin keeps its digits
+    p = np.asarray(polygon, dtype=float) - np.asarray(polygon, dtype=float)[0]
+    return 0.5 * float(_cross(p, np.roll(p, -1, axis=0)).sum())
+
+
+def area(polygon):
+    """Enclosed area in m2, whatever the orientation."""
+    return abs(signed_area(polygon))
+
+
+def perimeter(polygon):
+    """Length of the boundary in m."""
+    p = np.asarray(polygon, dtype=float)
+    return float(np.linalg.norm(np.roll(p, -1, axis=0) - p, axis=1).sum())
+
+
+def is_simple(polygon):
+    """Whether no two edges of the polygon meet, except neighbours at their common vertex.
+
+    Edges P→P+d and Q→Q+e that are not parallel meet where P + s d = Q + t e, s, t in [0, 1]; parallel ones where they
+    lie on one line and their spans overlap. Every pair of edges is looked at.
+    """
+    p = np.asarray(polygon, dtype=float)
+    k = len(p)
+    d = np.roll(p, -1, axis=0) - p
+    length = np.linalg.norm(d, axis=1)
+    if k < 3 or not (length > 0).all():
+        return False
+    i, j = np.triu_indices(k, 1)
+    gap = p[j] - p[i]
+    det = _cross(d[i], d[j])
+    tiny = 1e-12
+    parallel = np.abs(det) <= tiny * length[i] * length[j]
+    safe = np.where(parallel, 1.0, det)
+    s, t = _cross(gap, d[j]) / safe, _cross(gap, d[i]) / safe
+    crossing = ~parallel & (s >= -tiny) & (s <= 1 + tiny) & (t >= -tiny) & (t <= 1 + tiny)
+    along = (gap * d[i]).sum(1) / length[i] ** 2
+    reach = (d[i] * d[j]).sum(1) / length[i] ** 2
+    overlap = np.minimum(1.0, np.maximum(along, along + reach)) - np.maximum(0.0, np.minimum(along, along + reach))
+    collinear = parallel & (np.abs(_cross(d[i], gap)) <= tiny * length[i] * (length[i] + np.linalg.norm(gap, axis=1)))
+    neighbours = (j == i + 1) | ((i == 0) & (j == k - 1))
+    # neighbours share one point by right; they are at fault only when one folds back along the other
+    touching = crossing | (collinear & (overlap >= -tiny))
+    folded = collinear & (overlap > tiny)
+    return not bool(np.where(neighbours, folded, touching).any())
+
+
+def check_polygon(polygon, name="polygon"):
+    """`polygon` as a counter-clockwise float array (k, 2).
+
+    Raises ParameterError (under `name`) unless it has at least 3 vertices, all finite, and is simple. A last vertex
+    that repeats the first is dropped.
+    """
+    try:
+        p = np.array(polygon, dtype=float)
+    except (TypeError, ValueError):
+        raise ParameterError(name, "(not numbers)", "a list of x, y vertices", "m") from None
+    require(p.ndim == 2 and p.shape[1:] == (2,), name, f"array of shape {p.shape}", "a list of x, y vertices", "m")
+    require(np.isfinite(p).all(), name, f"{len(p)} vertices", "finite", "m")
+    if len(p) > 1 and (p[0] == p[-1]).all():
+        p = p[:-1]
+    require(len(p) >= 3, name, f"{len(p)} vertices", "at least 3 vertices")
+    require(is_simple(p), name, f"{len(p)} vertices", "free of repeated vertices and of edges that meet or cross")
+    return p if signed_area(p) > 0 else p[::-1].copy()
+
+
+def nearest(points, polygon):
+    """Signed distance, nearest boundary point and outward normal of points (n, 2), polygon counter-clockwise.
+
+    Returns distance (n,) in m, negative inside; foot (n, 2) in m; normal (n, 2), the unit gradient of the distance,
+    (x − foot)/distance, or the nearest edge's outward normal for a point on the boundary itself. The inside is found
+    by the even-odd crossing rule.
+    """
+    points = np.asarray(points, dtype=float).reshape(-1, 2)
+    start = np.asarray(polygon, dtype=float)
+    edge = np.roll(start, -1, axis=0) - start
+    squared = (edge * edge).sum(1)
+    outward = np.column_stack([edge[:, 1], -edge[:, 0]]) / np.sqrt(squared)[:, None]
+    # a horizontal edge is never straddled, so its slope is never used
+    slope = edge[:, 0] / np.where(edge[:, 1] == 0, 1.0, edge[:, 1])
+    distance, foot, normal = np.empty(len(points)), np.empty_like(points), np.empty_like(points)
+    step = max(1, CHUNK // len(start))
+    for first in range(0, len(points), step):
+        chunk = slice(first, first + step)
+        x = points[chunk]
+        rx, ry = x[:, :1] - start[:, 0], x[:, 1:] - start[:, 1]
+        t = np.clip((rx * edge[:, 0] + ry * edge[:, 1]) / squared, 0.0, 1.0)
+        away = (rx - t * edge[:, 0]) ** 2 + (ry - t * edge[:, 1]) ** 2
+        row, best = np.arange(len(x)), away.argmin(1)
+        straddled = (ry >= 0) != (ry - edge[:, 1] >= 0)
+        inside = (straddled & (rx < ry * slope)).sum(1) % 2 == 1
+        foot[chunk] = start[best] + t[row, best, None] * edge[best]
+        distance[chunk] = np.where(inside, -1.0, 1.0) * np.sqrt(away[row, best])
+        signed = distance[chunk, None]
+        on_boundary = np.abs(signed) <= 1e-12 * np.sqrt(squared.max())
+        normal[chunk] = np.where(on_boundary, outward[best], (x - foot[chunk]) / np.where(on_boundary, 1.0, signed))
+    return distance, foot, normal
+
+
+def signed_distance(points, polygon):
+    """Distance (n,) in m of points (n, 2) from the polygon's boundary: negative inside, positive outside."""
+    return nearest(points, check_polygon(polygon))[0]
+
+
+def tooth(*, height, width, rake, clearance, tip_radius):
+    """Outline of a cutting tooth that moves in +x: vertices (k, 2) in m, counter-clockwise.
+
+    The rake face looks forward (+x) and leans back from the vertical by `rake` (rad, negative: leans forward). The
+    clearance face looks down and rises backwards (−x) from the horizontal by `clearance` (rad, at least 0). They meet
+    in a tip rounded by `tip_radius` (m, 0 for a sharp one), whose circle touches the lines x = 0 and y = 0: the lowest
+    point of the tooth is at y = 0, x = −tip_radius, and the foremost point of the tip at x = 0 unless `rake` is
+    negative. The top is horizontal at y = `height` (m) and `width` (m) long; the back is vertical.
+
+    The wedge angle is β = π/2 − rake − clearance. The faces leave the circle at tip_radius/tan(β/2) from the sharp
+    edge, so that rounding takes the area tip_radius² (1/tan(β/2) − (π − β)/2) off it; chords replace the arc with a
+    sagitta of at most ARC_CHORD_ERROR of its radius.
+
+    Raises ParameterError for lengths not positive, angles that leave no wedge, and a tip or a clearance face that has
+    no room between top, back and rake face.
+    """
+    height, width = positive("height", height, "m"), positive("width", width, "m")
+    rake, clearance = finite("rake", rake, "rad"), not_negative("clearance", clearance, "rad")
+    tip_radius = not_negative("tip_radius", tip_radius, "m")
+    require(abs(rake) < math.pi / 2, "rake", rake, "between -pi/2 and pi/2, both excluded", "rad")
+    require(clearance < math.pi / 2, "clearance", clearance, "less than pi/2", "rad")
+    wedge = math.pi / 2 - rake - clearance
+    require(wedge > 0, "rake", rake, f"less than pi/2 - clearance = {math.pi / 2 - clearance:g}", "rad")
+
+    # outward normals of the two faces; the arc turns from one to the other
+    first, last = -math.pi / 2 - clearance, rake
+    pieces = max(1, math.ceil((last - first) / (2 * math.acos(1 - ARC_CHORD_ERROR)))) if tip_radius > 0 else 0
+    turn = np.linspace(first, last, pieces + 1)
+    tip = tip_radius * np.column_stack([np.cos(turn) - 1, np.sin(turn) + 1])
+    (heel_x, heel_y), (front_x, front_y) = tip[0], tip[-1]
+    require(front_y < height, "tip_radius", tip_radius, "so small that the rake face begins below the top", "m")
+    top_x = front_x - (height - front_y) * math.tan(rake)
+    back_x = top_x - width
+    require(back_x < heel_x, "width", width, f"greater than {top_x - heel_x:g}: the back must lie behind the tip", "m")
+    back_y = heel_y + (heel_x - back_x) * math.tan(clearance)
+    require(back_y < height, "clearance", clearance, "so small that its face meets the back below the top", "rad")
+    return check_polygon(np.vstack([tip, [[top_x, height], [back_x, height], [back_x, back_y]]]), "tooth")
+
+
+def read_outline(path):
+    """Polygon (k, 2) in m from a CSV file of x, y rows, counter-clockwise whatever the file's order.
+
+    One header line is allowed; blank lines and lines that begin with # are skipped. Raises ParameterError (outline)
+    for a file that cannot be read, a row that is not two numbers, and what check_polygon rejects.
+    """
+    try:
+        with open(path, newline="", encoding="utf-8-sig") as stream:
+            rows = [(n, row) for n, row in enumerate(csv.reader(stream), 1)
+                    if any(cell.strip() for cell in row) and not row[0].lstrip().startswith("#")]
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        raise ParameterError("outline", path, f"a readable CSV file ({error})") from None
+    vertices = []
+    for place, (line, row) in enumerate(rows):
+        try:
+            x, y = map(float, row)
+        except ValueError:
+            if place == 0:
+                continue
+            raise ParameterError("outline", path, f"two numbers a row, unlike line {line}: {','.join(row)}") from None
+        vertices.append((x, y))
+    return check_polygon(np.reshape(vertices, (-1, 2)), "outline")

@@ -1,0 +1,353 @@
+"""Dense random packings of discs and spheres, by minimising the overlap energy of soft particles.
+
+    E = ½ Σ_contacts (r_i + r_j − d_ij)₊² + Σ_walls (r_i − d_i)₊²
+
+The particles, scattered at random with the wanted volume, repel each other where they overlap; a wall repels like the
+particle's own mirror image, so that overlaps there are those of the bulk. The minimum (L-BFGS) is a jammed packing in
+static equilibrium. Its particles overlap a little, the more the lower the porosity: bonds made on it start stress-free
+at their distance of bonding, as with the initial gaps g0 of P (6).
+
+Porosity is 1 − Σ V_i / V of nominal particle volumes, overlaps counted twice.
+"""
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import brentq, minimize
+from scipy.spatial import cKDTree
+from scipy.stats import qmc
+
+from rockwear.kernels import outline
+from rockwear.kernels.checks import positive, require, within
+
+SKIN = 0.6  # margin of the neighbour list, in least radii; a list lives until a particle has moved half of it
+FORCE_TOLERANCE = 1e-4  # unbalanced force to be reached, for unit contact stiffness, in least radii
+MAX_ITERATIONS = 10_000
+MAX_IMBALANCE = 0.05  # jammed packings end below 0.01, loose ones, where contacts hardly touch, above 0.1
+REGRADINGS = 2
+MAX_PARTICLES = 5_000_000
+ROOM = 3  # the container's inscribed radius, in largest particle radii, that leaves something to be called a packing
+POROSITY_LIMITS = {2: (0.02, 0.20), 3: (0.20, 0.42)}
+
+
+@dataclass(frozen=True)
+class Packing:
+    """Particles in a container: positions (n, d) and radii (n,) in m.
+
+    `box` (d,) are the sides of a box with one corner at the origin, closed by walls except where `periodic` (d,);
+    for a packing in a `polygon` (k, 2) it is None. `scale` (n,) is the factor by which the grading field enlarged each
+    radius. `imbalance` is the mean unbalanced force on a particle over the mean contact force.
+    """
+
+    positions: np.ndarray
+    radii: np.ndarray
+    scale: np.ndarray
+    imbalance: float
+    box: tuple = None
+    periodic: tuple = None
+    polygon: np.ndarray = None
+
+    @property
+    def period(self):
+        """Sides (d,) in m of the periodic directions, 0 in the others; None where there is none."""
+        return _period(self.box, self.periodic) if self.box and any(self.periodic) else None
+
+
+def _period(box, periodic):
+    return np.where(periodic, box, 0.0)
+
+
+def volumes(radii, dimensions):
+    """Areas π r² of discs (m2) or volumes 4/3 π r³ of spheres (m3)."""
+    return math.pi * radii**2 if dimensions == 2 else 4 / 3 * math.pi * radii**3
+
+
+def porosity(packing):
+    """1 − Σ V_i / V with nominal particle volumes: what overlaps is counted twice."""
+    volume = math.prod(packing.box) if packing.box else outline.area(packing.polygon)
+    return 1 - volumes(packing.radii, packing.positions.shape[1]).sum() / volume
+
+
+def coordination(packing, gap=0.0):
+    """Mean number of neighbours of a particle whose surfaces are at most `gap` (m) apart, walls not counted."""
+    return 2 * len(contacts(packing.positions, packing.radii, gap, packing.period)) / len(packing.radii)
+
+
+def mean_overlap(packing):
+    """Mean over the touching pairs of (r_i + r_j − d)/(r_i + r_j): the overlap as a fraction of a diameter."""
+    i, j = contacts(packing.positions, packing.radii, 0.0, packing.period).T
+    distance = np.linalg.norm(separation(packing.positions, i, j, packing.period), axis=1)
+    return float(np.mean(1 - distance / (packing.radii[i] + packing.radii[j]))) if len(i) else 0.0
+
+
+def separation(positions, i, j, period=None):
+    """Vectors (m, d) from particles i to particles j (m,), to the nearest image where `period` (d,) is not 0."""
+    delta = positions[j] - positions[i]
+    if period is None:
+        return delta
+    return delta - period * np.rint(delta / np.where(period > 0, period, np.inf))
+
+
+def contacts(positions, radii, gap_max=0.0, period=None):
+    """Pairs (m, 2), i < j in ascending order, with |x_j − x_i| − r_i − r_j <= gap_max: P (6).
+
+    positions (n, d), radii (n,), gap_max and the sides `period` (d,; 0: not periodic) in m. A periodic side must be
+    longer than twice the greatest reach 2 r + gap_max. Particles are searched by classes of radius, each within a
+    factor of 2, so that large ones among small ones do not widen the search of all.
+    """
+    positions, radii = np.asarray(positions, dtype=float), np.asarray(radii, dtype=float)
+    found = [np.empty((0, 2), dtype=np.intp)]
+    if len(radii):
+        wrapped = positions if period is None else _wrap(positions, period)
+        size = np.floor(np.log2(radii / radii.min()))
+        classes = [np.flatnonzero(size == c) for c in np.unique(size)]
+        trees = [cKDTree(wrapped[ids], boxsize=period) for ids in classes]
+        largest = [radii[ids].max() for ids in classes]
+        for a, ids in enumerate(classes):
+            reach = max(2 * largest[a] + gap_max, 0.0)
+            found.append(ids[trees[a].query_pairs(reach, output_type="ndarray")])
+            for b in range(a + 1, len(classes)):
+                reach = max(largest[a] + largest[b] + gap_max, 0.0)
+                near = trees[a].sparse_distance_matrix(trees[b], reach, output_type="ndarray")
+                found.append(np.column_stack([ids[near["i"]], classes[b][near["j"]]]))
+    pairs = np.sort(np.concatenate(found), axis=1)
+    i, j = pairs.T
+    distance = np.linalg.norm(separation(positions, i, j, period), axis=1)
+    pairs = pairs[distance - radii[i] - radii[j] <= gap_max]
+    return pairs[np.lexsort((pairs[:, 1], pairs[:, 0]))]
+
+
+def _wrap(positions, period):
+    """Positions brought into [0, period) where it is not 0."""
+    inside = np.where(period > 0, np.mod(positions, np.where(period > 0, period, 1.0)), positions)
+    # the remainder of a tiny negative number rounds to the period itself
+    return np.where((period > 0) & (inside >= period), 0.0, inside)
+
+
+class _Box:
+    """Box [0, side] with walls on the sides that are not periodic."""
+
+    def __init__(self, side, periodic):
+        self.low, self.high = np.zeros(len(side)), np.asarray(side, dtype=float)
+        self.walled = ~np.asarray(periodic, dtype=bool)
+        self.volume = float(np.prod(self.high))
+        self.inradius = self.high.min() / 2
+        self.period = None if self.walled.all() else _period(self.high, periodic)
+
+    def depth(self, points):
+        """Distance (n,) from the boundary, negative outside."""
+        return np.where(self.walled, np.minimum(points, self.high - points), np.inf).min(1)
+
+    def press(self, points, radii):
+        """Energy of the walls and its gradient (n, d)."""
+        low = self.walled * np.maximum(radii[:, None] - points, 0.0)
+        high = self.walled * np.maximum(points + radii[:, None] - self.high, 0.0)
+        return (low**2).sum() + (high**2).sum(), 2 * (high - low)
+
+
+class _Polygon:
+    """Polygon whose nearest boundary point is the wall."""
+
+    period = None
+
+    def __init__(self, vertices):
+        self.vertices = vertices
+        self.low, self.high = vertices.min(0), vertices.max(0)
+        self.volume = outline.area(vertices)
+        trial = self.low + qmc.Halton(2, scramble=False).random(4096) * (self.high - self.low)
+        self.inradius = self.depth(trial).max()
+
+    def depth(self, points):
+        """Distance (n,) from the boundary, negative outside."""
+        return -outline.nearest(points, self.vertices)[0]
+
+    def press(self, points, radii):
+        """Energy of the walls and its gradient (n, 2)."""
+        distance, _, normal = outline.nearest(points, self.vertices)
+        overlap = np.maximum(radii + distance, 0.0)
+        return (overlap**2).sum(), 2 * overlap[:, None] * normal
+
+
+class _Energy:
+    """Overlap energy of the particles as a function of their flattened positions, with its gradient."""
+
+    def __init__(self, container, radii, unit):
+        self.container, self.radii, self.unit = container, radii, unit
+        self.listed_at = None
+
+    def _list(self, positions):
+        skin = SKIN * self.unit
+        self.listed_at = positions.copy()
+        self.pairs = contacts(positions, self.radii, skin, self.container.period)
+        self.at_wall = np.flatnonzero(self.container.depth(positions) < self.radii + skin)
+
+    def __call__(self, flat):
+        x = flat.reshape(len(self.radii), -1) * self.unit
+        if self.listed_at is None or ((x - self.listed_at) ** 2).sum(1).max() > (SKIN / 2 * self.unit) ** 2:
+            self._list(x)
+        i, j = self.pairs.T
+        delta = separation(x, i, j, self.container.period)
+        distance = np.sqrt((delta**2).sum(1))
+        overlap = np.maximum(self.radii[i] + self.radii[j] - distance, 0.0)
+        # two centres in one place have no direction to part in: they wait for another neighbour to push
+        push = (overlap / np.maximum(distance, 1e-12 * self.unit))[:, None] * delta
+        n = len(x)
+        gradient = np.column_stack([np.bincount(i, p, n) - np.bincount(j, p, n) for p in push.T])
+        wall_energy, wall_push = self.container.press(x[self.at_wall], self.radii[self.at_wall])
+        gradient[self.at_wall] += wall_push
+        self.mean_force = overlap[overlap > 0].mean() / self.unit if (overlap > 0).any() else 0.0
+        return (0.5 * (overlap @ overlap) + wall_energy) / self.unit**2, gradient.ravel() / self.unit
+
+
+def _relax(container, positions, radii):
+    """Positions (n, d) of least overlap energy near the given ones, and the imbalance left."""
+    unit = radii.min()
+    energy = _Energy(container, radii, unit)
+    options = {"maxiter": MAX_ITERATIONS, "maxfun": 2 * MAX_ITERATIONS, "gtol": FORCE_TOLERANCE, "ftol": 0.0}
+    found = minimize(energy, (positions / unit).ravel(), jac=True, method="L-BFGS-B", options=options)
+    if found.nit >= MAX_ITERATIONS:
+        raise RuntimeError(f"packing of {len(radii)} particles not at rest after {MAX_ITERATIONS} iterations")
+    _, gradient = energy(found.x)
+    relaxed = found.x.reshape(positions.shape) * unit
+    if container.period is not None:
+        relaxed = _wrap(relaxed, container.period)
+    unbalanced = np.linalg.norm(gradient.reshape(positions.shape), axis=1).mean()
+    return relaxed, float(unbalanced / energy.mean_force) if energy.mean_force else math.inf
+
+
+def _scale_at(radius_scale, points, largest):
+    """Values (n,) of the grading field, checked."""
+    if radius_scale is None:
+        return np.ones(len(points))
+    scale = np.asarray(radius_scale(points), dtype=float)
+    require(scale.shape == (len(points),), "radius_scale", f"array of shape {scale.shape}", "one factor a point")
+    require(((scale >= 1) & (scale <= largest)).all(), "radius_scale", f"{scale.min():g}..{scale.max():g}",
+            f"between 1 and {largest:g} everywhere, for particles to fit into the container")
+    return scale
+
+
+def _scatter(container, radius, solid, scale_at, rng):
+    """Places (n, d), draws (n,) from [0, 1) for the radii, and scales (n,) of particles of volume about `solid`.
+
+    Places come from a scrambled Halton sequence, more even than independent ones: the particles then need not move
+    far. A point is kept with probability scale^-d, so that the solid volume is spread evenly.
+    """
+    dimensions = len(container.low)
+    halton = qmc.Halton(dimensions + 1, seed=rng)
+    batch = 1 + int(solid / volumes(radius(0.5), dimensions))
+    points, draws, scales = np.empty((0, dimensions)), np.empty(0), np.empty(0)
+    filled = np.zeros(1)
+    while filled[-1] < solid:
+        trial = halton.random(batch)
+        new = container.low + trial[:, :-1] * (container.high - container.low)
+        inside = container.depth(new) > 0
+        new, lot = new[inside], trial[inside, -1]
+        scale = scale_at(new)
+        kept = lot < scale**-dimensions
+        points, scales = np.vstack([points, new[kept]]), np.append(scales, scale[kept])
+        draws = np.append(draws, rng.random(kept.sum()))
+        filled = np.append(0.0, np.cumsum(volumes(radius(draws) * scales, dimensions)))
+    n = int(np.abs(filled - solid).argmin())
+    return points[:n], draws[:n], scales[:n]
+
+
+def _fit_radii(radius, draws, scales, solid, dimensions):
+    """Radii (n,) whose volumes add up to `solid`.
+
+    The draws u are bent to u^p, which keeps the radii within their bounds. Equal radii leave nothing to bend: they
+    then share one factor, which makes up for the part of a particle that is missing or too much.
+    """
+    def excess(p):
+        return volumes(radius(draws**p) * scales, dimensions).sum() - solid
+
+    if excess(0.5) > 0 > excess(2.0):
+        return radius(draws ** brentq(excess, 0.5, 2.0)) * scales
+    radii = radius(draws) * scales
+    return radii * (solid / volumes(radii, dimensions).sum()) ** (1 / dimensions)
+
+
+def pack(*, box=None, polygon=None, radius_min, radius_max, porosity, seed, radius_scale=None, periodic=False):
+    """Jammed random packing of discs (2D) or spheres (3D) in a box or of discs in a polygon, as a Packing.
+
+    box        sides (w, h) or (w, h, d) in m, one corner at the origin; or
+    polygon    vertices (k, 2) in m of any simple polygon: discs line it from inside
+    radius_min, radius_max    radii are uniform in between (m)
+    porosity   1 − Σ V_i / V, met to 1e-6. Measured on discs with r_max/r_min = 1.5 in 109 mm: 0.03 leaves a mean
+               overlap of 5 % of a diameter, 0.12 one of 1.8 % and 4.6 neighbours a disc, 0.16 one of 0.4 % and 4.1;
+               at 0.18 the discs no longer hold each other (periodic: 0.17). Spheres: 0.20 leaves 5.3 %, 0.36 1.2 %,
+               0.40 0.1 %; loose at 0.42 (periodic: 0.38).
+    seed       integer; the same seed gives the same packing on the same numpy and scipy
+    radius_scale    grading field f(positions (n, d)) -> factors (n,), at least 1: the radius at a place is a draw from
+               [radius_min, radius_max] times the field there
+    periodic   one flag, or one a direction: opposite sides of the box meet, there is no wall
+
+    Two-dimensional discs of nearly equal radii order themselves into hexagonal patches: keep r_max/r_min above 1.2 or
+    so where isotropy matters. Time: about a second for 2,100 discs, some 5 s for a tooth of 6,000; see tile for more.
+
+    Raises ParameterError for lengths that are not positive, radius_min > radius_max, a container whose inscribed
+    radius is less than ROOM particle radii, a field below 1, and a porosity outside POROSITY_LIMITS or at which the
+    particles do not hold each other.
+    """
+    container, where = _container(box, polygon, periodic)
+    dimensions = len(container.low)
+    radius_min, radius_max = positive("radius_min", radius_min, "m"), positive("radius_max", radius_max, "m")
+    require(radius_min <= radius_max, "radius_min", radius_min, f"at most radius_max = {radius_max:g}", "m")
+    room = container.inradius / ROOM
+    require(radius_max <= room, "radius_max", radius_max,
+            f"at most {room:g}, 1/{ROOM} of the radius inscribed in the container", "m")
+    porosity = within("porosity", porosity, *POROSITY_LIMITS[dimensions])
+    solid = (1 - porosity) * container.volume
+    require(solid / volumes(radius_min, dimensions) <= MAX_PARTICLES, "radius_min", radius_min,
+            f"large enough for at most {MAX_PARTICLES} particles", "m")
+    require(isinstance(seed, (int, np.integer)) and seed >= 0, "seed", seed, "an integer of at least 0")
+    rng = np.random.default_rng(seed)
+
+    def radius(u):
+        return radius_min + (radius_max - radius_min) * u
+
+    def scale_at(points):
+        return _scale_at(radius_scale, points, room / radius_max)
+
+    positions, draws, scale = _scatter(container, radius, solid, scale_at, rng)
+    radii = _fit_radii(radius, draws, scale, solid, dimensions)
+    positions, imbalance = _relax(container, positions, radii)
+    # the particles have moved in the field: fit the sizes to their new places
+    for _ in range(REGRADINGS if radius_scale is not None else 0):
+        scale = scale_at(positions)
+        radii = _fit_radii(radius, draws, scale, solid, dimensions)
+        positions, imbalance = _relax(container, positions, radii)
+    require(imbalance <= MAX_IMBALANCE, "porosity", porosity, "lower for particles that hold each other: these are loose")
+    return Packing(positions, radii, scale, imbalance, **where)
+
+
+def _container(box, polygon, periodic):
+    """The container, and how a Packing names it."""
+    require((box is None) != (polygon is None), "box", box, "given, or else polygon, not both")
+    if box is None:
+        vertices = outline.check_polygon(polygon)
+        require(not np.any(periodic), "periodic", periodic, "False in a polygon")
+        return _Polygon(vertices), {"polygon": vertices}
+    require(np.ndim(box) == 1 and len(box) in (2, 3), "box", box, "two or three sides", "m")
+    sides = tuple(positive("box", side, "m") for side in box)
+    require(np.ndim(periodic) == 0 or np.shape(periodic) == (len(sides),), "periodic", periodic, "one flag a direction")
+    flags = tuple(bool(flag) for flag in np.broadcast_to(periodic, len(sides)))
+    return _Box(sides, flags), {"box": sides, "periodic": flags}
+
+
+def tile(packing, repeats):
+    """A large specimen: a packing periodic in all directions repeated `repeats` (d,) times and settled between walls.
+
+    Repetition leaves no seam; at the outer walls particles are pushed in and the packing relaxes anew. Returns a
+    Packing with walls all round and the porosity of the tile. Raises ParameterError for a packing that is not
+    periodic in all directions and repeats that are not positive integers.
+    """
+    require(packing.box is not None and all(packing.periodic), "packing", f"periodic: {packing.periodic}",
+            "periodic in all directions")
+    require(len(repeats) == len(packing.box) and all(isinstance(k, (int, np.integer)) and k > 0 for k in repeats),
+            "repeats", repeats, "one positive integer a direction")
+    corners = np.indices(repeats).reshape(len(repeats), -1).T * packing.box
+    positions = (packing.positions + corners[:, None, :]).reshape(-1, len(repeats))
+    radii, scale = np.tile(packing.radii, len(corners)), np.tile(packing.scale, len(corners))
+    box, periodic = tuple(k * side for k, side in zip(repeats, packing.box)), (False,) * len(repeats)
+    positions, imbalance = _relax(_Box(box, periodic), positions, radii)
+    return Packing(positions, radii, scale, imbalance, box=box, periodic=periodic)
