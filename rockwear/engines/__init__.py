@@ -1,0 +1,80 @@
+"""Engines: what hangs into YADE's loop. An engine knows what one visit does; PyRunner knows when it comes.
+
+YADE keeps PyRunner commands as strings, so that a saved scene survives a new process: the string names an engine,
+and the table of live engines below finds it.
+"""
+from time import perf_counter
+
+from yade import O, PyRunner
+
+_live = {}
+failures = []
+"""What engines raised inside YADE's loop, which would otherwise lose it."""
+
+
+class Engine:
+    """One visit in `act`; `state`/`restore` carry what must survive a restart; `log` names what a recorder may write."""
+
+    name = None
+    """The name under which PyRunner finds the engine."""
+
+    def __init__(self):
+        self.last_iteration = O.iter
+        self.wall_time = 0.0
+        self.visits = 0
+
+    def act(self):
+        """One visit, at the present step."""
+        raise NotImplementedError(f"{type(self).__name__} has no visit")
+
+    def elapsed(self):
+        """Seconds of the simulation since the last call. (PyRunner may come late or early: nobody assumes its period.)"""
+        steps = O.iter - self.last_iteration
+        self.last_iteration = O.iter
+        return steps * O.dt
+
+    def connect(self):
+        """Find YADE's objects again: the scene in O has just been built or loaded."""
+
+    def state(self):
+        """What must survive a restart: a dict of numbers, arrays, and dicts of them."""
+        return {}
+
+    def restore(self, state):
+        """Take back what `state` gave."""
+
+    def log(self):
+        """{name: (value, unit)} of what may be recorded now."""
+        return {}
+
+
+def fire(name):
+    """One visit of the engine `name`, its wall time counted. PyRunner calls this."""
+    engine = _live[name]
+    begin = perf_counter()
+    try:
+        engine.act()
+    except Exception as error:
+        failures.append(error)
+        O.pause()
+    engine.wall_time += perf_counter() - begin
+    engine.visits += 1
+
+
+def enlist(engines):
+    """Make these engines, and no others, the ones that `fire` finds."""
+    _live.clear()
+    failures.clear()
+    _live.update({engine.name: engine for engine in engines})
+
+
+def runner(name, period):
+    """A PyRunner that visits the engine `name` every `period` steps."""
+    return PyRunner(command=f"import rockwear.engines; rockwear.engines.fire('{name}')", iterPeriod=int(period),
+                    label=f"{name}_runner")
+
+
+def law_functor(type_name):
+    """The contact law of that type in the scene that is in O now."""
+    loop = next(engine for engine in O.engines if type(engine).__name__ == "InteractionLoop")
+    return next(functor for functor in loop.lawDispatcher.functors if type(functor).__name__ == type_name)

@@ -22,6 +22,7 @@ from rockwear.kernels.checks import positive, require, within
 
 SKIN = 0.6  # margin of the neighbour list, in least radii; a list lives until a particle has moved half of it
 FORCE_TOLERANCE = 1e-4  # unbalanced force to be reached, for unit contact stiffness, in least radii
+SETTLING = 0.3  # the same for a tiled specimen, over the mean overlap of its tile: what is left is near the walls
 MAX_ITERATIONS = 10_000
 MAX_IMBALANCE = 0.05  # jammed packings end below 0.01, loose ones, where contacts hardly touch, above 0.1
 REGRADINGS = 2
@@ -199,11 +200,11 @@ class _Energy:
         return (0.5 * (overlap @ overlap) + wall_energy) / self.unit**2, gradient.ravel() / self.unit
 
 
-def _relax(container, positions, radii):
+def _relax(container, positions, radii, tolerance=FORCE_TOLERANCE):
     """Positions (n, d) of least overlap energy near the given ones, and the imbalance left."""
     unit = radii.min()
     energy = _Energy(container, radii, unit)
-    options = {"maxiter": MAX_ITERATIONS, "maxfun": 2 * MAX_ITERATIONS, "gtol": FORCE_TOLERANCE, "ftol": 0.0}
+    options = {"maxiter": MAX_ITERATIONS, "maxfun": 2 * MAX_ITERATIONS, "gtol": tolerance, "ftol": 0.0}
     found = minimize(energy, (positions / unit).ravel(), jac=True, method="L-BFGS-B", options=options)
     if found.nit >= MAX_ITERATIONS:
         raise RuntimeError(f"packing of {len(radii)} particles not at rest after {MAX_ITERATIONS} iterations")
@@ -272,7 +273,7 @@ def pack(*, box=None, polygon=None, radius_min, radius_max, porosity, seed, radi
     box        sides (w, h) or (w, h, d) in m, one corner at the origin; or
     polygon    vertices (k, 2) in m of any simple polygon: discs line it from inside
     radius_min, radius_max    radii are uniform in between (m)
-    porosity   1 − Σ V_i / V, met to 1e-6. Measured on discs with r_max/r_min = 1.5 in 109 mm: 0.03 leaves a mean
+    porosity   1 − Σ V_i / V, met to rounding. Measured on discs with r_max/r_min = 1.5 in 109 mm: 0.03 leaves a mean
                overlap of 5 % of a diameter, 0.12 one of 1.8 % and 4.6 neighbours a disc, 0.16 one of 0.4 % and 4.1;
                at 0.18 the discs no longer hold each other (periodic: 0.17). Spheres: 0.20 leaves 5.3 %, 0.36 1.2 %,
                0.40 0.1 %; loose at 0.42 (periodic: 0.38).
@@ -337,17 +338,19 @@ def _container(box, polygon, periodic):
 def tile(packing, repeats):
     """A large specimen: a packing periodic in all directions repeated `repeats` (d,) times and settled between walls.
 
-    Repetition leaves no seam; at the outer walls particles are pushed in and the packing relaxes anew. Returns a
-    Packing with walls all round and the porosity of the tile. Raises ParameterError for a packing that is not
+    Repetition leaves no seam. At the outer walls particles are pushed in, and the packing relaxes until no particle's
+    unbalanced force is worth mentioning: the overlaps near the walls stay some 10 % above those inside. A tile of
+    3,800 discs repeated 5 x 5 times takes 15 s, a packing of as many discs at once 80 s. Returns a Packing with walls
+    all round and the porosity of the tile. Raises ParameterError for a packing that is not
     periodic in all directions and repeats that are not positive integers.
     """
     require(packing.box is not None and all(packing.periodic), "packing", f"periodic: {packing.periodic}",
             "periodic in all directions")
-    require(len(repeats) == len(packing.box) and all(isinstance(k, (int, np.integer)) and k > 0 for k in repeats),
+    require(np.shape(repeats) == np.shape(packing.box) and all(isinstance(k, (int, np.integer)) and k > 0 for k in repeats),
             "repeats", repeats, "one positive integer a direction")
     corners = np.indices(repeats).reshape(len(repeats), -1).T * packing.box
     positions = (packing.positions + corners[:, None, :]).reshape(-1, len(repeats))
     radii, scale = np.tile(packing.radii, len(corners)), np.tile(packing.scale, len(corners))
     box, periodic = tuple(k * side for k, side in zip(repeats, packing.box)), (False,) * len(repeats)
-    positions, imbalance = _relax(_Box(box, periodic), positions, radii)
+    positions, imbalance = _relax(_Box(box, periodic), positions, radii, SETTLING * mean_overlap(packing))
     return Packing(positions, radii, scale, imbalance, box=box, periodic=periodic)

@@ -1,0 +1,147 @@
+"""Heat in rock and tool: friction, conduction, exchange across contacts, convection from the free surface."""
+import math
+
+import numpy as np
+from yade import O
+
+from ..kernels.surface import free_surface
+from . import Engine
+
+
+class Heat(Engine):
+    """One HeatNetwork over rock particles (nodes 0..n-1) and tool particles (n..n+m-1), staggered with the mechanics.
+
+    Friction heat chi W is shared between tool and rock by effusivity, W being the work of irreversible slip (P 36-41);
+    between rock particles in halves. A tool and a rock particle that touch exchange h A (T_tool - T_rock) (P 66) for
+    the seconds they touched, A = 2 r b of the tool particle, as the exact exchange of the two lumps, which cannot
+    overshoot. Convection acts on the free surface (P 42), found anew when bonds have broken or particles have gone.
+
+    network: kernels.conduction.HeatNetwork; parts: dict of the scene's bonds, rock_friction, tool_contact engines;
+    rock, tool: the specimen and the tool; settings: the scene's heat parameters.
+    """
+
+    name = "heat"
+
+    def __init__(self, *, network, bonds, rock_friction, tool_contact, rock, tool, heat_fraction, tool_share,
+                 contact_conductance, convection, ambient, rock_conductance, surface_period):
+        super().__init__()
+        self.network, self.bonds, self.rock_friction, self.tool_contact = network, bonds, rock_friction, tool_contact
+        self.rock, self.tool, self.n = rock, tool, rock.count
+        self.heat_fraction, self.tool_share = heat_fraction, tool_share
+        self.contact_conductance, self.convection, self.ambient = contact_conductance, convection, ambient
+        self.rock_conductance, self.surface_period = rock_conductance, surface_period
+        self.carried_away = self.replaced = 0.0
+        self.surface_time = -math.inf
+        self.clock = 0.0
+        self.exposed = np.zeros(self.n + tool.count)
+        self.exchanged_with = {}
+
+    def act(self):
+        elapsed = self.elapsed()
+        self.clock += elapsed
+        heat = self._sources()
+        gone = ~self.network.present
+        # Heat meant for a particle that has gone since goes with it.
+        self.carried_away += float(heat[gone].sum())
+        heat[gone] = 0.0
+        self.network.add_heat(heat)
+        self.network.advance(elapsed)
+        if self.clock - self.surface_time >= self.surface_period:
+            self.find_surfaces()
+
+    def _sources(self):
+        tool_work, rock_work, touching = self.tool_contact.take_heating()
+        rock = (1 - self.tool_share) * rock_work + self.rock_friction.take_work()
+        heat = self.heat_fraction * np.concatenate([rock, self.tool_share * tool_work])
+        self.exchanged_with = touching
+        if touching:
+            pairs = np.array(sorted(touching))
+            self._exchange(heat, self.n + pairs[:, 0], pairs[:, 1], np.array([touching[i, j] for i, j in pairs.tolist()]))
+        return heat
+
+    def _exchange(self, heat, tool, rock, seconds):
+        capacity, temperature = self.network.capacity, self.network.temperature
+        there = capacity[tool] > 0
+        tool, rock, seconds = tool[there], rock[there], seconds[there]
+        lumped = capacity[tool] * capacity[rock] / (capacity[tool] + capacity[rock])
+        conductance = self.contact_conductance * 2 * self.tool.radii[tool - self.n]
+        moved = (temperature[tool] - temperature[rock]) * lumped * -np.expm1(-conductance * seconds / lumped)
+        heat += np.bincount(rock, moved, heat.size) - np.bincount(tool, moved, heat.size)
+
+    def find_surfaces(self):
+        """Contacts that conduct and surfaces that convect, as they are now."""
+        self.surface_time = self.clock
+        self.rock_friction.find_contacts()
+        loose = [(i.id1, i.id2) for i in self.rock_friction.contacts]
+        bonded = self.bonds.pairs[self.bonds.in_contact()]
+        tool_pairs = self.tool.erosion.pairs
+        tool_pairs = tool_pairs[self.tool.erosion.alive[tool_pairs].all(axis=1)] + self.n
+        edges = np.concatenate([bonded, np.array(loose, int).reshape(-1, 2), tool_pairs])
+        conductance = np.concatenate([np.full(len(bonded) + len(loose), self.rock_conductance),
+                                      np.full(len(tool_pairs), self.tool.conductance)])
+        self.network.rewire(edges=edges, conductance=conductance)
+        in_contact = np.zeros(self.n + self.tool.count, bool)
+        for index, rock in self.exchanged_with:
+            in_contact[[self.n + index, rock]] = True
+        self._expose(in_contact)
+
+    def _expose(self, in_contact):
+        self.exposed[:] = 0.0
+        self.exposed[:self.n] = free_surface(positions=self.rock.current_positions(), radii=self.rock.radii)
+        alive = np.flatnonzero(self.tool.erosion.alive)
+        if len(alive):
+            self.exposed[self.n + alive] = free_surface(positions=self.tool.positions[alive], radii=self.tool.radii[alive])
+        self.exposed[:self.n][self.rock.supported] = 0.0
+        self.exposed[self.n:][self.tool.mounted] = 0.0
+        self.exposed[in_contact] = 0.0
+        present = np.flatnonzero(self.network.present)
+        self.network.convect(present, self.convection * self.exposed[present], self.ambient)
+
+    def remove(self, indices):
+        """Tool particles `indices` are gone, with the heat they hold."""
+        self.network.remove(np.asarray(indices) + self.n)
+
+    def replace_rock(self, temperature):
+        """New rock at the start of a cycle: its particles take these (n,) K, and the difference is booked apart."""
+        change = np.zeros(self.network.temperature.size)
+        change[:self.n] = (temperature - self.network.temperature[:self.n]) * self.network.capacity[:self.n]
+        self.replaced += float(change.sum())
+        self.network.add_heat(change)
+
+    def tool_temperature(self):
+        """(m,) K of the tool's particles."""
+        return self.network.temperature[self.n:]
+
+    def balance(self):
+        """The heat book in J, signed as it changes what rock and tool hold; residual is what it fails to explain."""
+        book = self.network.balance
+        book["generated"] += self.carried_away - self.replaced
+        book["removed"] -= self.carried_away
+        book["rock_replaced"] = self.replaced
+        book["stored"] = self.network.heat_content - self.initial_content
+        book["residual"] = book["stored"] - math.fsum(v for k, v in book.items() if k != "stored")
+        return book
+
+    def begin(self):
+        """Take stock before the first step."""
+        self.initial_content = self.network.heat_content
+        self.find_surfaces()
+
+    def state(self):
+        network = self.network.state()
+        return {"network": network, "carried_away": self.carried_away, "replaced": self.replaced, "clock": self.clock,
+                "surface_time": self.surface_time, "exposed": self.exposed, "initial_content": self.initial_content,
+                "touched": np.array(sorted(self.exchanged_with), int).reshape(-1, 2)}
+
+    def restore(self, state):
+        self.network.restore(state["network"])
+        self.exposed = state["exposed"].copy()
+        for name in ("carried_away", "replaced", "clock", "surface_time", "initial_content"):
+            setattr(self, name, float(state[name]))
+        self.exchanged_with = {(int(i), int(j)): 0.0 for i, j in state["touched"].tolist()}
+
+    def log(self):
+        alive = self.tool.erosion.alive
+        temperature = self.network.temperature
+        hottest = float(temperature[self.n:][alive].max()) if alive.any() else math.nan
+        return {"tool_temperature_max": (hottest, "K"), "rock_temperature_max": (float(temperature[:self.n].max()), "K")}

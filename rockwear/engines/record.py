@@ -1,0 +1,64 @@
+"""Time series of a run, and the watch over its health."""
+import math
+
+from yade import O, utils
+
+from . import Engine
+
+
+class RunEnded(Exception):
+    """The run cannot or need not go on; str() is one line. `healthy` tells a result from a failure."""
+
+    def __init__(self, message, healthy):
+        super().__init__(message)
+        self.healthy = healthy
+
+
+class Recorder(Engine):
+    """Rows of named values at a regular interval. `sources`: functions giving {name: (value, unit)}."""
+
+    name = "recorder"
+
+    def __init__(self, sources):
+        super().__init__()
+        self.sources = sources
+        self.header, self.rows = [], []
+
+    def act(self):
+        found = [item for source in self.sources for item in source().items()]
+        self.header = [f"{name} [{unit}]" for name, (_, unit) in found]
+        self.rows.append([value for _, (value, _) in found])
+
+    def state(self):
+        return {"header": self.header, "rows": self.rows}
+
+    def restore(self, state):
+        self.header, self.rows = [str(name) for name in state["header"]], state["rows"].tolist()
+
+    def write(self, path):
+        """history.csv: a header of `name [unit]`, a row a visit, numbers to their last digit."""
+        lines = [",".join(self.header)] + [",".join(f"{value:.10g}" for value in row) for row in self.rows]
+        temporary = path.with_suffix(".new")
+        temporary.write_text("\n".join(lines) + "\n")
+        temporary.replace(path)
+
+
+class Watch(Engine):
+    """Ends a run whose energy runs away: kinetic energy far above all the work put in, or not a number.
+
+    work: a function giving the work done on the rock so far (J); floor: J below which nothing is judged.
+    """
+
+    name = "watch"
+    runaway = 10.0
+
+    def __init__(self, *, work, floor):
+        super().__init__()
+        self.work, self.floor = work, floor
+
+    def act(self):
+        kinetic = utils.kineticEnergy()
+        allowed = self.runaway * max(self.work(), self.floor)
+        if not math.isfinite(kinetic) or kinetic > allowed:
+            raise RunEnded(f"the simulation blew up at t = {O.time:g} s: kinetic energy {kinetic:g} J is not below "
+                           f"{allowed:g} J, {self.runaway:g} times the work done; try a smaller time_step_fraction", False)

@@ -1,0 +1,134 @@
+"""Parameters of a scene: declared once, read from the command line or a yade-batch table, checked before anything runs."""
+import difflib
+import os
+import sys
+from dataclasses import dataclass
+from typing import Any, Callable
+
+from .kernels.checks import ParameterError, finite, require
+
+
+def number(low=None, high=None):
+    """A rule: a finite number in [low, high]."""
+    def rule(name, value, unit):
+        found = finite(name, value, unit)
+        require(low is None or found >= low, name, found, f"at least {low:g}" if low is not None else "", unit)
+        require(high is None or found <= high, name, found, f"at most {high:g}" if high is not None else "", unit)
+        return found
+    return rule
+
+
+def above_zero(name, value, unit):
+    """A rule: a finite number greater than 0."""
+    found = finite(name, value, unit)
+    require(found > 0, name, found, "greater than 0", unit)
+    return found
+
+
+def integer(low):
+    """A rule: a whole number of at least `low`."""
+    def rule(name, value, unit):
+        found = finite(name, value, unit)
+        require(found == int(found) and found >= low, name, value, f"a whole number of at least {low}", unit)
+        return int(found)
+    return rule
+
+
+def flag(name, value, unit):
+    """A rule: true or false."""
+    words = {"true": True, "1": True, "yes": True, "false": False, "0": False, "no": False}
+    require(str(value).lower() in words, name, value, "true or false")
+    return words[str(value).lower()]
+
+
+def choice(*options):
+    """A rule: one of these words."""
+    def rule(name, value, unit):
+        require(str(value) in options, name, value, f"one of {', '.join(options)}")
+        return str(value)
+    return rule
+
+
+def text(name, value, unit):
+    """A rule: any text."""
+    return str(value)
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One number of a scene: its name, default, unit, rule, meaning, and where the default comes from."""
+
+    name: str
+    default: Any
+    unit: str
+    rule: Callable
+    meaning: str
+    source: str = "ours"
+
+    def check(self, value):
+        """The value as the rule's type. Raises ParameterError."""
+        return self.rule(self.name, value, self.unit)
+
+
+def read(parameters, arguments):
+    """{name: checked value} of all parameters, from `--name value` arguments or the row that yade-batch gives.
+
+    A flag may stand without a value. Raises ParameterError for an unknown name, a missing value or a broken rule.
+    """
+    known = {parameter.name: parameter for parameter in parameters}
+    given = {**_table_row(), **_arguments(arguments, known)}
+    for name, value in given.items():
+        if name not in known:
+            close = difflib.get_close_matches(name, known, n=1)
+            raise ParameterError(name, value, f"a parameter of this scene{f'; did you mean {close[0]}' if close else ''}"
+                                              " (--help lists them)")
+    return {name: parameter.check(given.get(name, parameter.default)) for name, parameter in known.items()}
+
+
+def _arguments(arguments, known):
+    given, rest = {}, list(arguments)
+    while rest:
+        word = rest.pop(0)
+        if not word.startswith("--") or len(word) < 3:
+            raise ParameterError("argument", word, "of the form --name value")
+        name, equals, value = word[2:].partition("=")
+        name = name.replace("-", "_")
+        if not equals:
+            is_flag = name in known and known[name].rule is flag
+            if rest and not rest[0].startswith("--") and not (is_flag and rest[0].lower() not in ("true", "false", "0", "1", "yes", "no")):
+                value = rest.pop(0)
+            elif is_flag:
+                value = "true"
+            else:
+                raise ParameterError(name, "", "given a value")
+        given[name] = value
+    return given
+
+
+def _table_row():
+    """The row of a yade-batch table that this run is for, as {column: text}; nothing outside a batch."""
+    place = os.environ.get("PARAM_TABLE")
+    if not place:
+        return {}
+    from yade.utils import TableParamReader
+    table, line = place.rsplit(":", 1)
+    row = TableParamReader(table).paramDict()[int(line)]
+    return {name: value for name, value in row.items() if not name.startswith("!") and name != "description"}
+
+
+def batch_row():
+    """The name of the row that yade-batch runs, or None outside a batch."""
+    place = os.environ.get("PARAM_TABLE")
+    if not place:
+        return None
+    from yade.utils import TableParamReader
+    table, line = place.rsplit(":", 1)
+    name = TableParamReader(table).paramDict()[int(line)].get("description") or f"row {line}"
+    return "".join(c if c.isalnum() or c in "-_.=," else "_" for c in name)
+
+
+def describe(parameters, file=sys.stdout):
+    """Print every parameter with its default, unit, meaning and source."""
+    for parameter in parameters:
+        print(f"  --{parameter.name} {parameter.default} [{parameter.unit or '-'}]\n"
+              f"        {parameter.meaning} ({parameter.source})", file=file)

@@ -1,0 +1,113 @@
+"""Specimens of bonded rock: packing (kept in a cache), support, bonds, and the particles in YADE."""
+import hashlib
+import json
+import os
+from pathlib import Path
+
+import numpy as np
+
+from .kernels import packing
+from .kernels.checks import ParameterError, not_negative, positive, require, within
+
+CACHE_VERSION = 1
+
+
+def cache_folder():
+    """Where packings are kept: $ROCKWEAR_CACHE, or rockwear in the user's cache folder."""
+    base = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
+    return Path(os.environ.get("ROCKWEAR_CACHE") or Path(base) / "rockwear")
+
+
+def cached(make, **key):
+    """`make()`, a dict of arrays, or what an earlier call with the same key has left in the cache folder.
+
+    A cache that cannot be read or written is passed over.
+    """
+    digest = hashlib.sha256(json.dumps([CACHE_VERSION, key], sort_keys=True).encode()).hexdigest()[:24]
+    file = cache_folder() / f"{digest}.npz"
+    try:
+        with np.load(file) as stored:
+            return dict(stored)
+    except (OSError, ValueError, KeyError, EOFError):
+        pass
+    arrays = make()
+    temporary = file.with_suffix(f".{os.getpid()}.npz")
+    try:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        np.savez(temporary, **arrays)
+        os.replace(temporary, file)
+    except OSError:
+        temporary.unlink(missing_ok=True)
+    return arrays
+
+
+def graded_radius(*, top, fine_depth, coarsening, over):
+    """A field of the radius factor: 1 from the surface y = top down to fine_depth, rising to `coarsening` over `over` m."""
+    def factor(points):
+        depth = top - points[:, 1]
+        return 1 + (coarsening - 1) * np.clip((depth - fine_depth) / over, 0, 1)
+    return factor
+
+
+class Specimen:
+    """A box of bonded discs of thickness 1 m.
+
+    width, height: m; radius_min, radius_max: m, uniform in between; porosity: 1 - sum of areas over the box's area;
+    seed: of the packing; bonding_gap: largest gap over which particles are bonded (P 6), m; coarsening: factor by
+    which radii grow below fine_depth (m) over as much depth again. Strengths of bonds grow with that factor, so that the macroscopic
+    strength stays uniform; in 2D a bond's stiffness sets the macroscopic one whatever the radius.
+    Raises ParameterError naming the parameter.
+    """
+
+    def __init__(self, *, width, height, radius_min, radius_max, porosity, seed, bonding_gap, coarsening=1.0,
+                 fine_depth=0.035, density):
+        positive("width", width, "m"), positive("height", height, "m")
+        not_negative("bonding_gap", bonding_gap, "m")
+        within("coarsening", coarsening, 1, 8)
+        positive("fine_depth", fine_depth, "m")
+        self.width, self.height = width, height
+        key = dict(box=[width, height], radius_min=radius_min, radius_max=radius_max, porosity=porosity, seed=seed)
+        if coarsening > 1:
+            key.update(coarsening=coarsening, fine_depth=fine_depth)
+
+        def make():
+            field = graded_radius(top=height, fine_depth=fine_depth, coarsening=coarsening, over=fine_depth)
+            made = packing.pack(box=(width, height), radius_min=radius_min, radius_max=radius_max, porosity=porosity,
+                                seed=seed, radius_scale=field if coarsening > 1 else None)
+            return {"positions": made.positions, "radii": made.radii, "scale": made.scale}
+
+        stored = cached(make, **key)
+        self.positions, self.radii, self.scale = stored["positions"], stored["radii"], stored["scale"]
+        self.count = len(self.radii)
+        self.porosity = 1 - float(np.sum(np.pi * self.radii**2)) / (width * height)
+        self.pairs = packing.contacts(self.positions, self.radii, bonding_gap)
+        require(len(self.pairs) > self.count, "bonding_gap", bonding_gap, "large enough to bond the packing", "m")
+        self.strength_factor = self.scale[self.pairs].mean(axis=1)
+        # Particles carry the mass of the pores: bulk density over solid fraction (P 63).
+        self.masses = density / (1 - self.porosity) * np.pi * self.radii**2
+        self.inertias = 0.5 * self.masses * self.radii**2
+        self.supported = np.zeros(self.count, bool)
+
+    def support(self, *faces):
+        """Hold the particles that touch these faces ("bottom", "left", "right") of the box."""
+        x, y, r = *self.positions.T, self.radii * 1.05
+        touches = {"bottom": y < r, "left": x < r, "right": x > self.width - r}
+        for face in faces:
+            if face not in touches:
+                raise ParameterError("support", face, f"one of {', '.join(touches)}")
+            self.supported |= touches[face]
+
+    def report(self):
+        """{name: (value, unit)}: how the packing came out."""
+        i, j = self.pairs.T
+        distance = np.linalg.norm(self.positions[i] - self.positions[j], axis=1)
+        overlap = np.clip(1 - distance / (self.radii[i] + self.radii[j]), 0, None)
+        return {"particles": (self.count, "-"), "bonds": (len(self.pairs), "-"), "porosity": (self.porosity, "-"),
+                "coordination": (2 * len(self.pairs) / self.count, "-"),
+                "mean_overlap": (float(overlap.mean()), "of a diameter")}
+
+    def current_positions(self):
+        """(n, 2) m, of the particles in YADE now, by its one bulk read."""
+        from yade import Subdomain
+        values = np.fromiter(Subdomain().getStateValuesFromIds(list(range(self.count))), float)
+        return values.reshape(self.count, 13)[:, :2]

@@ -1,0 +1,72 @@
+"""The tool: a parametric or given outline filled with particles, rigid, with a skin that meets the rock."""
+import numpy as np
+
+from .kernels import outline, packing
+from .kernels.checks import positive
+from .kernels.conduction import calibrated_conductance
+from .kernels.erosion import Erosion
+from .rock import cached
+
+POROSITY = 0.13
+"""Of the packing that fills the outline (P 5.2). Its mass and volume are those of the outline."""
+NEIGHBOUR_GAP = 0.2
+"""Particles whose gap is below this part of the mean radius are neighbours: they conduct, and uncover one another."""
+
+
+class Tool:
+    """Particles that fill an outline (k, 2) m, each standing for its part of the outline's area times 1 m.
+
+    radius_min, radius_max: m; removal: "volume" or "depth" (kernels.erosion); conductivity: W/m K; density: kg/m3,
+    specific_heat: J/kg K. `mounted` marks particles at the top and the back, where the shank holds the tool: they are
+    no surface. Everything else at the boundary is skin.
+    """
+
+    def __init__(self, *, vertices, radius_min, radius_max, seed, removal, material):
+        positive("tool_radius_min", radius_min, "m")
+        self.vertices = np.asarray(vertices, float)
+        self.area = outline.area(self.vertices)
+        stored = cached(lambda: self._fill(radius_min, radius_max, seed, material.conductivity),
+                        polygon=self.vertices.tolist(), radius_min=radius_min, radius_max=radius_max, seed=seed,
+                        porosity=POROSITY, gap=NEIGHBOUR_GAP, conductivity=material.conductivity)
+        self.positions, self.radii, pairs = stored["positions"], stored["radii"], stored["pairs"]
+        self.conductance = float(stored["conductance"])
+        self.count = len(self.radii)
+        self.volumes = self.area * self.radii**2 / np.sum(self.radii**2)
+        self.material = material
+        self.mounted = self._mounted()
+        skin = np.flatnonzero(stored["at_boundary"] & ~self.mounted)
+        self.erosion = Erosion(radii=self.radii, volumes=self.volumes, pairs=pairs, skin=skin,
+                               anchored=np.flatnonzero(self.mounted), rule=removal)
+
+    def _fill(self, radius_min, radius_max, seed, conductivity):
+        filled = packing.pack(polygon=self.vertices, radius_min=radius_min, radius_max=radius_max, porosity=POROSITY,
+                              seed=seed)
+        gap = NEIGHBOUR_GAP * 0.5 * (radius_min + radius_max)
+        # One conductance for every pair, fitted on a square of the same packing: the outline itself may be any shape.
+        side = 50 * radius_max
+        square = packing.pack(box=(side, side), radius_min=radius_min, radius_max=radius_max, porosity=POROSITY, seed=seed)
+        fitted = calibrated_conductance(positions=square.positions, conductivity=conductivity, conductance=1.0,
+                                        edges=packing.contacts(square.positions, square.radii, gap))
+        distance = -outline.signed_distance(filled.positions, self.vertices)
+        return {"positions": filled.positions, "radii": filled.radii, "conductance": fitted[0],
+                "pairs": packing.contacts(filled.positions, filled.radii, gap), "at_boundary": distance < 1.3 * filled.radii}
+
+    def _mounted(self):
+        x, y = self.positions.T
+        top, back = self.vertices[:, 1].max(), self.vertices[:, 0].min()
+        return (y > top - 1.5 * self.radii) | (x < back + 1.5 * self.radii)
+
+    @property
+    def density(self):
+        """kg/m3 of the outline's area; particles carry it through their share of that area."""
+        return self.material.density
+
+    @property
+    def masses(self):
+        """(m,) kg, the mass each particle stands for; they add up to the outline's."""
+        return self.material.density * self.volumes
+
+    def foremost(self, below):
+        """Largest x reached by particles with any part below the height `below` (both m, in the tool's own frame)."""
+        low = self.positions[:, 1] - self.radii < below
+        return float((self.positions[low, 0] + self.radii[low]).max())
