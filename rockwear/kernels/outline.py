@@ -86,37 +86,55 @@ def check_polygon(polygon, name="polygon"):
     return p if signed_area(p) > 0 else p[::-1].copy()
 
 
+def _chunks(points, edges):
+    step = max(1, CHUNK // edges)
+    return [slice(first, first + step) for first in range(0, len(points), step)]
+
+
+def nearest_on_edges(points, start, edge):
+    """Nearest point (n, 2) on the segments start → start + edge (k, 2), and the segment (n,) it lies on."""
+    squared = (edge * edge).sum(1)
+    foot, segment = np.empty_like(points), np.empty(len(points), dtype=np.intp)
+    for chunk in _chunks(points, len(start)):
+        x = points[chunk]
+        rx, ry = x[:, :1] - start[:, 0], x[:, 1:] - start[:, 1]
+        t = np.clip((rx * edge[:, 0] + ry * edge[:, 1]) / squared, 0.0, 1.0)
+        best = ((rx - t * edge[:, 0]) ** 2 + (ry - t * edge[:, 1]) ** 2).argmin(1)
+        segment[chunk] = best
+        foot[chunk] = start[best] + t[np.arange(len(x)), best, None] * edge[best]
+    return foot, segment
+
+
+def inside(points, polygon):
+    """Whether points (n, 2) lie in the polygon, by the even-odd crossing rule."""
+    start = np.asarray(polygon, dtype=float)
+    edge = np.roll(start, -1, axis=0) - start
+    # a horizontal edge is never straddled, so its slope is never used
+    slope = edge[:, 0] / np.where(edge[:, 1] == 0, 1.0, edge[:, 1])
+    within = np.empty(len(points), dtype=bool)
+    for chunk in _chunks(points, len(start)):
+        rx, ry = points[chunk, :1] - start[:, 0], points[chunk, 1:] - start[:, 1]
+        straddled = (ry >= 0) != (ry - edge[:, 1] >= 0)
+        within[chunk] = (straddled & (rx < ry * slope)).sum(1) % 2 == 1
+    return within
+
+
 def nearest(points, polygon):
     """Signed distance, nearest boundary point and outward normal of points (n, 2), polygon counter-clockwise.
 
     Returns distance (n,) in m, negative inside; foot (n, 2) in m; normal (n, 2), the unit gradient of the distance,
-    (x − foot)/distance, or the nearest edge's outward normal for a point on the boundary itself. The inside is found
-    by the even-odd crossing rule.
+    (x − foot)/distance, or the nearest edge's outward normal for a point on the boundary itself.
     """
     points = np.asarray(points, dtype=float).reshape(-1, 2)
     start = np.asarray(polygon, dtype=float)
     edge = np.roll(start, -1, axis=0) - start
-    squared = (edge * edge).sum(1)
-    outward = np.column_stack([edge[:, 1], -edge[:, 0]]) / np.sqrt(squared)[:, None]
-    # a horizontal edge is never straddled, so its slope is never used
-    slope = edge[:, 0] / np.where(edge[:, 1] == 0, 1.0, edge[:, 1])
-    distance, foot, normal = np.empty(len(points)), np.empty_like(points), np.empty_like(points)
-    step = max(1, CHUNK // len(start))
-    for first in range(0, len(points), step):
-        chunk = slice(first, first + step)
-        x = points[chunk]
-        rx, ry = x[:, :1] - start[:, 0], x[:, 1:] - start[:, 1]
-        t = np.clip((rx * edge[:, 0] + ry * edge[:, 1]) / squared, 0.0, 1.0)
-        away = (rx - t * edge[:, 0]) ** 2 + (ry - t * edge[:, 1]) ** 2
-        row, best = np.arange(len(x)), away.argmin(1)
-        straddled = (ry >= 0) != (ry - edge[:, 1] >= 0)
-        inside = (straddled & (rx < ry * slope)).sum(1) % 2 == 1
-        foot[chunk] = start[best] + t[row, best, None] * edge[best]
-        distance[chunk] = np.where(inside, -1.0, 1.0) * np.sqrt(away[row, best])
-        signed = distance[chunk, None]
-        on_boundary = np.abs(signed) <= 1e-12 * np.sqrt(squared.max())
-        normal[chunk] = np.where(on_boundary, outward[best], (x - foot[chunk]) / np.where(on_boundary, 1.0, signed))
-    return distance, foot, normal
+    length = np.linalg.norm(edge, axis=1)
+    foot, segment = nearest_on_edges(points, start, edge)
+    away = points - foot
+    distance = np.where(inside(points, start), -1.0, 1.0) * np.linalg.norm(away, axis=1)
+    outward = (np.column_stack([edge[:, 1], -edge[:, 0]]) / length[:, None])[segment]
+    on_boundary = (np.abs(distance) <= 1e-12 * length.max())[:, None]
+    return distance, foot, np.where(on_boundary, outward, away / np.where(on_boundary, 1.0, distance[:, None]))
 
 
 def signed_distance(points, polygon):

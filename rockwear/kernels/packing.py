@@ -22,10 +22,12 @@ from rockwear.kernels.checks import positive, require, within
 
 SKIN = 0.6  # margin of the neighbour list, in least radii; a list lives until a particle has moved half of it
 FORCE_TOLERANCE = 1e-4  # unbalanced force to be reached, for unit contact stiffness, in least radii
+ENERGY_TOLERANCE = 1e-8  # or else the relative decrease of E in an iteration: discs on the chords of an arc hop a little
 SETTLING = 0.3  # the same for a tiled specimen, over the mean overlap of its tile: what is left is near the walls
 MAX_ITERATIONS = 10_000
 MAX_IMBALANCE = 0.05  # jammed packings end below 0.01, loose ones, where contacts hardly touch, above 0.1
 REGRADINGS = 2
+CORNER = math.radians(10)  # a boundary that turns by more at one vertex has a corner there
 MAX_PARTICLES = 5_000_000
 ROOM = 3  # the container's inscribed radius, in largest particle radii, that leaves something to be called a packing
 POROSITY_LIMITS = {2: (0.02, 0.20), 3: (0.20, 0.42)}
@@ -147,7 +149,11 @@ class _Box:
 
 
 class _Polygon:
-    """Polygon whose nearest boundary point is the wall."""
+    """Polygon whose sides, the runs of edges between its corners, are walls.
+
+    A disc in a corner is held by both sides. Were it held by the nearest one alone, its energy would have a kink along
+    the bisector, where it could not come to rest; the chords of an arc, on the other hand, are one wall.
+    """
 
     period = None
 
@@ -158,6 +164,14 @@ class _Polygon:
         trial = self.low + qmc.Halton(2, scramble=False).random(4096) * (self.high - self.low)
         self.inradius = self.depth(trial).max()
 
+        edge = np.roll(vertices, -1, axis=0) - vertices
+        heading = np.arctan2(edge[:, 1], edge[:, 0])
+        turn = np.abs(np.angle(np.exp(1j * (heading - np.roll(heading, 1)))))
+        corners = np.flatnonzero(turn > CORNER)
+        first = corners[0] if len(corners) else 0
+        order = np.roll(np.arange(len(vertices)), -first)
+        self.sides = [(vertices[run], edge[run]) for run in np.split(order, corners[1:] - first)]
+
     def depth(self, points):
         """Distance (n,) from the boundary, negative outside."""
         return -outline.nearest(points, self.vertices)[0]
@@ -165,8 +179,15 @@ class _Polygon:
     def press(self, points, radii):
         """Energy of the walls and its gradient (n, 2)."""
         distance, _, normal = outline.nearest(points, self.vertices)
-        overlap = np.maximum(radii + distance, 0.0)
-        return (overlap**2).sum(), 2 * overlap[:, None] * normal
+        escaped = np.where(distance > 0, radii + distance, 0.0)
+        energy, gradient = (escaped**2).sum(), 2 * escaped[:, None] * normal
+        for start, edge in self.sides:
+            outward = outline.nearest_on_edges(points, start, edge)[0] - points
+            away = np.linalg.norm(outward, axis=1)
+            overlap = np.where(distance > 0, 0.0, np.maximum(radii - away, 0.0))
+            energy += (overlap**2).sum()
+            gradient += (2 * overlap / np.maximum(away, 1e-12 * radii))[:, None] * outward
+        return energy, gradient
 
 
 class _Energy:
@@ -193,7 +214,7 @@ class _Energy:
         # two centres in one place have no direction to part in: they wait for another neighbour to push
         push = (overlap / np.maximum(distance, 1e-12 * self.unit))[:, None] * delta
         n = len(x)
-        gradient = np.column_stack([np.bincount(i, p, n) - np.bincount(j, p, n) for p in push.T])
+        gradient = np.column_stack([np.bincount(i, p, n) - np.bincount(j, p, n) for p in push.T]).astype(float)
         wall_energy, wall_push = self.container.press(x[self.at_wall], self.radii[self.at_wall])
         gradient[self.at_wall] += wall_push
         self.mean_force = overlap[overlap > 0].mean() / self.unit if (overlap > 0).any() else 0.0
@@ -204,7 +225,8 @@ def _relax(container, positions, radii, tolerance=FORCE_TOLERANCE):
     """Positions (n, d) of least overlap energy near the given ones, and the imbalance left."""
     unit = radii.min()
     energy = _Energy(container, radii, unit)
-    options = {"maxiter": MAX_ITERATIONS, "maxfun": 2 * MAX_ITERATIONS, "gtol": tolerance, "ftol": 0.0}
+    options = {"maxiter": MAX_ITERATIONS, "maxfun": 2 * MAX_ITERATIONS, "gtol": tolerance,
+               "ftol": ENERGY_TOLERANCE}
     found = minimize(energy, (positions / unit).ravel(), jac=True, method="L-BFGS-B", options=options)
     if found.nit >= MAX_ITERATIONS:
         raise RuntimeError(f"packing of {len(radii)} particles not at rest after {MAX_ITERATIONS} iterations")
