@@ -78,3 +78,17 @@ def law_functor(type_name):
     """The contact law of that type in the scene that is in O now."""
     loop = next(engine for engine in O.engines if type(engine).__name__ == "InteractionLoop")
     return next(functor for functor in loop.lawDispatcher.functors if type(functor).__name__ == type_name)
+
+
+def contact_energy(interactions):
+    """Strain energy (J) of contacts that are no bonds, sum of kn un^2/2 + Ft^2/2kt; dashpots store none.
+
+    (YADE's own elasticEnergy() needs a step since the scene was loaded, and counts the dashpots' force as a spring's.)
+    """
+    energy = 0.0
+    for i in interactions:
+        first, second = O.bodies[i.id1], O.bodies[i.id2]
+        # A loaded scene has no penetrationDepth before its first step.
+        overlap = first.shape.radius + second.shape.radius - (second.state.pos - first.state.pos).norm()
+        energy += 0.5 * (i.phys.kn * max(overlap, 0.0)**2 + i.phys.shearForce.squaredNorm() / i.phys.ks)
+    return energy

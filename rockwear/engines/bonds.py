@@ -5,7 +5,7 @@ from collections import namedtuple
 import numpy as np
 from yade import FrictPhys, O
 
-from . import Engine, law_functor
+from . import Engine, contact_energy, law_functor
 
 INTACT, BROKEN, GONE = 0, 1, 2
 """Status of a bond: GONE is broken, long apart and let go; a later meeting is a new contact."""
@@ -204,6 +204,11 @@ class RockFriction(Engine):
         """(n,) friction work (J) of each particle since the last call."""
         taken, self.work = self.work, np.zeros(self.particles)
         return taken
+
+    def elastic_energy(self):
+        """Strain energy (J) of the new contacts between rock particles."""
+        self.find_contacts()
+        return contact_energy(self.contacts)
 
     @property
     def total(self):

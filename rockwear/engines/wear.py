@@ -5,7 +5,7 @@ import numpy as np
 from yade import O, utils
 
 from ..kernels.archard import worn_volume
-from . import Engine, law_functor
+from . import Engine, contact_energy, law_functor
 
 
 class ToolContact(Engine):
@@ -90,6 +90,10 @@ class ToolContact(Engine):
         """(2,) impulse (N s) on the tool since the last call."""
         taken, self.impulse = self.impulse, np.zeros(2)
         return taken
+
+    def elastic_energy(self):
+        """Strain energy (J) of the tool's contacts."""
+        return contact_energy(i for body in self.tool.ids for i in O.interactions.withBody(body))
 
     @property
     def friction(self):
