@@ -142,6 +142,7 @@ class HeatNetwork:
         _refuse("temperature", self._temperature[nodes], self._temperature[nodes] < 0, "at least 0", "K")
         self._surroundings[nodes] = surroundings
         self._radiation[nodes] = area
+        self._prepare()
 
     def add_heat(self, joules_by_node):
         """Put `joules_by_node`, (n,) J, in at once (friction gathered since the last visit, P eq. 36): `generated`.
@@ -186,32 +187,43 @@ class HeatNetwork:
 
         K is the conduction matrix of the nodes that are not fixed plus hA on its diagonal. The eigenvalue is that
         of C^-1/2 K C^-1/2. Radiation adds the largest 4 sigma eA T^3 / C at the temperatures of now (or of the
-        surroundings, where hotter), a bound from above (Weyl). P eqs. 56-58 estimate the same limit from l^2/(2a).
+        surroundings, where hotter), a bound from above (Weyl). P eq. 57 estimates the limit of a chain; it prints
+        l/(2a), but means l^2/(2a).
         """
-        if self._linear_rate is None:
-            self._linear_rate = self._largest_rate()
-        return _step_of(self._linear_rate + self._radiative_rate())
+        return _step_of(self._largest_rate() + self._radiative_rate(self._temperature))
 
     def advance(self, duration, step=None):
         """Let `duration`, s, pass in equal Euler steps (P eq. 54); return their number.
 
         step  longest step allowed, s; by default STEP_FRACTION of the stable one. One above the stable step is
               refused with ParameterError.
-        Where radiation becomes stiffer as a node heats up, the rest is divided anew.
+        Where a node heats up and so radiates more stiffly, what is left is divided more finely. FloatingPointError
+        if the temperatures have left the range of numbers.
         """
         duration = not_negative("duration", duration, "s")
         if step is not None:
             step = positive("step", step, "s")
-            if step > _step_of(self._gershgorin + self._radiative_rate()):
-                stable = self.stable_step()
-                require(step <= stable, "step", step, f"at most the stable step, {stable:g}", "s")
-        left, count = self._divide(duration, step), 0
+            if not self._bears(step, 1.0, self._temperature):
+                raise ParameterError("step", step, f"at most the stable step, {self.stable_step():g}", "s")
+        share = STEP_FRACTION if step is None else 1.0
+        if duration == 0:
+            return 0
+        if step is None and not self._bears(duration, share, self._temperature):
+            step = share * self.stable_step()
+        left = 1 if step is None else math.ceil(duration / step * (1 - 1e-12))  # round-off is not worth a step
+        count, radiates = 0, self._glowing.size > 0
         while left:
+            flows = self._flows(self._temperature)
+            gains = sum(flows)
+            if not math.isfinite(gains.sum()):
+                raise FloatingPointError("the temperatures are no longer finite numbers")
+            rise = gains * self._response
+            while radiates and not self._bears(duration / left, share, self._temperature + duration / left * rise):
+                left *= 2
             dt = duration / left
-            self._euler(dt)
-            left, count, duration = left - 1, count + 1, duration - dt
-            if left and self._radiation.any():
-                left = max(left, self._divide(duration, step))
+            self._enter(dt, flows, gains)
+            self._keep(self._temperature + dt * rise)
+            duration, left, count = duration - dt, left - 1, count + 1
         return count
 
     def steady_state(self):
@@ -237,15 +249,15 @@ class HeatNetwork:
         free = np.flatnonzero(free)
         temperature = self._temperature.copy()
         hottest = max(1.0, abs(temperature).max())
-        if self._radiation.any():  # from below the first step may shoot far up, from above it cannot
+        if self._glowing.size:  # from below the first step may shoot far up, from above it cannot
             temperature[free] = hottest = max(hottest, self._surroundings.max())
         linear = self._conduction + diags(self._convection)
         for _ in range(200 if free.size else 0):
             stiffness = 4 * STEFAN_BOLTZMANN * self._radiation * temperature**3
             jacobian = (linear + diags(stiffness)).tocsc()[free][:, free]
-            change = _factorised(jacobian).solve(self._gains(temperature)[free])
+            change = _factorised(jacobian).solve(sum(self._flows(temperature))[free])
             temperature[free] += change
-            if not self._radiation.any() or abs(change).max() <= 1e-12 * hottest:
+            if not self._glowing.size or abs(change).max() <= 1e-12 * hottest:
                 break
         kept = np.bincount(part, self._capacity * self._temperature, count)
         now = np.bincount(part, self._capacity * temperature, count)
@@ -304,7 +316,8 @@ class HeatNetwork:
         self._prepare()
 
     def _prepare(self):
-        """Follow a change of the contacts, the fixed nodes or the convection."""
+        """Follow a change of the contacts, the fixed nodes or the surfaces."""
+        self._glowing = np.flatnonzero(self._radiation)  # few, and powers of temperature are dear
         free = (self._capacity > 0) & ~self._fixed
         self._response = np.divide(1.0, self._capacity, out=np.zeros(free.size), where=free)
         # Gershgorin: no eigenvalue lies above the largest row sum of absolute values.
@@ -313,9 +326,13 @@ class HeatNetwork:
         self._linear_rate = None
 
     def _largest_rate(self):
+        """Largest eigenvalue of C^-1 K, 1/s, looked for once after each change of K."""
+        if self._linear_rate is None:
+            self._linear_rate = self._eigenvalue() if self._gershgorin > 0 else 0.0
+        return self._linear_rate
+
+    def _eigenvalue(self):
         free = np.flatnonzero(self._response > 0)
-        if self._gershgorin == 0:
-            return 0.0
         scale = diags(np.sqrt(self._response[free]))
         matrix = (self._conduction + diags(self._convection)).tocsr()[free][:, free]
         matrix = scale @ matrix @ scale
@@ -328,36 +345,37 @@ class HeatNetwork:
         except ArpackNoConvergence:
             return self._gershgorin
 
-    def _radiative_rate(self):
-        hotter = np.maximum(self._temperature, self._surroundings)
-        return float((4 * STEFAN_BOLTZMANN * self._radiation * hotter**3 * self._response).max())
+    def _radiative_rate(self, temperature):
+        if not self._glowing.size:
+            return 0.0
+        glowing = self._glowing
+        hotter = np.maximum(temperature[glowing], self._surroundings[glowing])
+        stiffness = 4 * STEFAN_BOLTZMANN * self._radiation[glowing] * hotter**3
+        return float((stiffness * self._response[glowing]).max())
 
-    def _divide(self, duration, step):
-        """Number of steps for `duration`; the eigenvalue is asked for only if Gershgorin's bound takes several."""
-        if duration == 0:
-            return 0
-        bound = STEP_FRACTION * _step_of(self._gershgorin + self._radiative_rate())
-        if duration <= min(bound, step or bound):
-            return 1
-        steps = duration / (step or STEP_FRACTION * self.stable_step())
-        return max(1, math.ceil(steps * (1 - 1e-12)))  # what round-off adds is not worth a step
+    def _bears(self, dt, share, temperature):
+        """Whether `dt` is within `share` of the stable step; Gershgorin's bound mostly saves the eigenvalue."""
+        radiative = self._radiative_rate(temperature)
+        return (dt <= share * _step_of(self._gershgorin + radiative)
+                or dt <= share * _step_of(self._largest_rate() + radiative))
 
-    def _gains(self, temperature):
-        return (self._power - self._conduction @ temperature + self._convection * (self._ambient - temperature)
-                + STEFAN_BOLTZMANN * self._radiation * (self._surroundings**4 - temperature**4))
+    def _flows(self, temperature):
+        """Heat flowing into each node, W: generated, conducted, convected and, where any, radiated."""
+        flows = [self._power, -(self._conduction @ temperature), self._convection * (self._ambient - temperature)]
+        if self._glowing.size:
+            radiated = np.zeros(temperature.size)
+            fourth = self._surroundings[self._glowing]**4 - temperature[self._glowing]**4
+            radiated[self._glowing] = STEFAN_BOLTZMANN * self._radiation[self._glowing] * fourth
+            flows.append(radiated)
+        return flows
 
-    def _euler(self, dt):
-        temperature, book = self._temperature, self._balance
-        convected = self._convection * (self._ambient - temperature)
-        gains = self._power - self._conduction @ temperature + convected
-        if self._radiation.any():
-            radiated = STEFAN_BOLTZMANN * self._radiation * (self._surroundings**4 - temperature**4)
-            gains += radiated
-            book["radiated"] += dt * float(radiated.sum())
-        book["generated"] += dt * float(self._power.sum())
-        book["convected"] += dt * float(convected.sum())
-        book["into_fixed"] -= dt * float(gains[self._fixed].sum())
-        self._keep(temperature + dt * (gains * self._response))
+    def _enter(self, dt, flows, gains):
+        generated, _, convected, *radiated = flows
+        self._balance["generated"] += dt * float(generated.sum())
+        self._balance["convected"] += dt * float(convected.sum())
+        for flow in radiated:
+            self._balance["radiated"] += dt * float(flow.sum())
+        self._balance["into_fixed"] -= dt * float(gains[self._fixed].sum())
 
 
 def bar_conductance(conductivity, thickness):

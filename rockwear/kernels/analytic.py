@@ -1,0 +1,111 @@
+"""Exact solutions of heat conduction, the yardsticks of the thermal model.
+
+They answer the benchmarks M 7.6.1-7.6.3, whose material and source are to be given in one consistent set of units
+(SI here, but any set serves). Temperatures are rises above the initial one. Formulas after Carslaw and Jaeger,
+Conduction of Heat in Solids. Numbers out of range raise ParameterError.
+"""
+import numpy as np
+from scipy.special import erfc
+
+from rockwear.kernels.checks import not_negative, positive, require
+
+_TERMS = np.arange(1, 402, 2)  # odd numbers of the sine series
+_EARLY = 0.05  # Fourier number below which images settle faster than the sine series
+
+
+def diffusivity(conductivity, density, specific_heat):
+    """a = lambda/(rho*c), m^2/s (P eq. 58); W/(m K), kg/m^3, J/(kg K), each greater than 0."""
+    return (positive("conductivity", conductivity, "W/(m K)") / positive("density", density, "kg/m^3")
+            / positive("specific_heat", specific_heat, "J/(kg K)"))
+
+
+def heated_slab(x, t, *, thickness, conductivity, density, specific_heat, power):
+    """Slab heated evenly inside, its faces x = 0 and x = L held at the initial temperature (M 7.6.1), K.
+
+        T = q/(2 lambda) x (L - x) - sum_{n odd} 4 q L^2/(lambda (n pi)^3) sin(n pi x/L) exp(-(n pi)^2 a t/L^2)
+
+    x      m, scalar or array, within the slab
+    t      s, at least 0; inf gives the steady state
+    power  q, W/m^3
+    """
+    x, length = np.asarray(x, float), positive("thickness", thickness, "m")
+    rate = diffusivity(conductivity, density, specific_heat) / length**2
+    _inside(x, length)
+    require(t >= 0, "t", t, "at least 0", "s")
+    wave = np.pi * _TERMS
+    series = np.sin(np.multiply.outer(x / length, wave)) @ (4 / wave**3 * np.exp(-wave**2 * rate * t))
+    return power / conductivity * (x * (length - x) / 2 - length**2 * series)
+
+
+def half_space_under_flux(x, t, *, flux, conductivity, density, specific_heat):
+    """Half-space x >= 0 under a constant flux q through its face from t = 0 on (M 7.6.2), K.
+
+        T = 2 q sqrt(t/(lambda rho c)) ierfc(x/(2 sqrt(a t))),   ierfc(z) = exp(-z^2)/sqrt(pi) - z erfc(z)
+
+    x  m, scalar or array, at least 0;  t  s, greater than 0;  flux  W/m^2
+    """
+    x, t = np.asarray(x, float), positive("t", t, "s")
+    require((x >= 0).all(), "x", x.min(), "at least 0", "m")
+    z = x / (2 * np.sqrt(diffusivity(conductivity, density, specific_heat) * t))
+    ierfc = np.exp(-z**2) / np.sqrt(np.pi) - z * erfc(z)
+    return 2 * flux * np.sqrt(t / (conductivity * density * specific_heat)) * ierfc
+
+
+def slab_with_jumping_faces(x, t, *, thickness, conductivity, density, specific_heat, jump):
+    """Slab whose faces x = 0 and x = L rise by `jump`, K, at t = 0 and stay there (M 7.6.3), K.
+
+        T/jump = 1 - sum_{n odd} 4/(n pi) sin(n pi x/L) exp(-(n pi)^2 a t/L^2)
+               = sum_{k >= 0} (-1)^k [erfc((k L + x)/(2 sqrt(a t))) + erfc((k L + L - x)/(2 sqrt(a t)))]
+
+    The second form is used while a t/L^2 < 0.05, where it needs few terms.
+
+    x  m, scalar or array, within the slab;  t  s, greater than 0
+    """
+    x, t, length = np.asarray(x, float), positive("t", t, "s"), positive("thickness", thickness, "m")
+    _inside(x, length)
+    fourier = diffusivity(conductivity, density, specific_heat) * t / length**2
+    place = x / length
+    if fourier >= _EARLY:
+        wave = np.pi * _TERMS
+        return jump * (1 - np.sin(np.multiply.outer(place, wave)) @ (4 / wave * np.exp(-wave**2 * fourier)))
+    reach = 2 * np.sqrt(fourier)
+    return jump * sum((-1)**k * (erfc((k + place) / reach) + erfc((k + 1 - place) / reach)) for k in range(4))
+
+
+def two_nodes(t, *, capacities, conductance, temperatures):
+    """Two particles exchanging heat through one contact: their temperatures, K, shape of t plus (2,).
+
+        T = Tm + (T0 - Tm) exp(-H (1/C1 + 1/C2) t),   Tm = (C1 T1 + C2 T2)/(C1 + C2)
+
+    t  s, scalar or array;  capacities  two, J/K;  conductance  H, W/K;  temperatures  the two at t = 0, K
+    """
+    first, second = (positive("capacities", value, "J/K") for value in capacities)
+    start = np.asarray(temperatures, float)
+    mean = (first * start[0] + second * start[1]) / (first + second)
+    rate = not_negative("conductance", conductance, "W/K") * (1 / first + 1 / second)
+    return mean + np.multiply.outer(np.exp(-rate * np.asarray(t, float)), start - mean)
+
+
+def rod_decay_rate(*, length, diffusivity, mode=1):
+    """Rate at which sin(n pi x/L) dies away in a rod with cold ends (cos: insulated ends), a (n pi/L)^2, 1/s.
+
+    length  m;  diffusivity  m^2/s;  mode  n = 1, 2, ...
+    """
+    return (positive("diffusivity", diffusivity, "m^2/s")
+            * (positive("mode", mode) * np.pi / positive("length", length, "m"))**2)
+
+
+def chain_decay_rate(*, cells, conductance, capacity, mode=1):
+    """The same rate for a chain of equal particles, exactly: (4 H/C) sin^2(n pi/(2 N)), 1/s.
+
+    cells  N, the number of contacts between cold ends, or of particles between insulated ends
+    conductance  H, W/K;  capacity  C, J/K;  mode  n = 1 ... N-1
+
+    With H = lambda b, C = rho c l b l and N = L/l it goes to rod_decay_rate as l^2.
+    """
+    return (4 * positive("conductance", conductance, "W/K") / positive("capacity", capacity, "J/K")
+            * np.sin(positive("mode", mode) * np.pi / (2 * positive("cells", cells)))**2)
+
+
+def _inside(x, length):
+    require(((x >= 0) & (x <= length)).all(), "x", x.tolist(), f"within 0 and {length:g}", "m")
