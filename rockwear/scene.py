@@ -11,10 +11,9 @@ from yade import (Bo1_Sphere_Aabb, ForceResetter, FrictMat, FrictViscoMat, Ig2_S
                   Law2_ScGeom_JCFpmPhys_JointedCohesiveFrictionalPM, MatchMaker, NewtonIntegrator, O, utils)
 
 from . import engines
-from .engines import runner
 from .engines.bonds import Bonds, RockFriction
 from .engines.heat import Heat
-from .engines.motion import BackgroundDamping
+from .engines.motion import BackgroundDamping, Foresight
 from .engines.record import Recorder, RunEnded, Watch
 from .engines.wear import ToolContact, Wear
 from .kernels.archard import BRINELL, KELVIN, MET71, MET91, Hardness
@@ -250,8 +249,9 @@ class Cutting:
         self.bodies = ToolBodies(tool, self.velocity)
         self.bonds = Bonds(pairs=rock.pairs, kn=v.kn, kt=v.kt, mu=v.mu, normal_strength=v.Rn * rock.strength_factor,
                            shear_strength=v.Rt * rock.strength_factor, clock=lambda: self.time)
-        self.rock_friction = RockFriction(self.bonds, rock.count)
-        self.contact = ToolContact(tool=self.bodies, particles=rock.count, velocity=self.velocity)
+        motion = Foresight(masses=rock.masses, inertias=rock.inertias, radii=rock.radii, held=rock.supported)
+        self.rock_friction = RockFriction(bonds=self.bonds, motion=motion)
+        self.contact = ToolContact(tool=self.bodies, motion=motion, velocity=self.velocity)
         self.wear = Wear(contact=self.contact, erosion=tool.erosion, tool=self.bodies, mu=v.tool_mu,
                          coefficient=v.wear_coefficient * v.acceleration, hardness=self.hardness,
                          temperature=self._tool_temperature, on_removal=self._on_removal)
@@ -280,17 +280,19 @@ class Cutting:
                     rock_conductance=rock_share, surface_period=v.surface_period)
 
     def _runners(self):
+        """Runners before and after the integrator: what looks at this step's forces, and what changes the scene."""
         v, dt = self.v, self.time_step
         periods = {"bonds": 1, "tool_contact": v.sampling_period, "rock_friction": v.rock_sampling_period,
                    "wear": v.wear_period, "heat": max(1, round(v.heat_period / dt)),
                    "background_damping": v.damping_period, "recorder": max(1, round(v.record_period / dt)), "watch": 200}
-        runners = {engine.name: runner(engine.name, periods[engine.name]) for engine in self.live}
-        before = [runners.pop(engine.name) for engine in (self.bonds, self.rock_friction)]
-        return before, list(runners.values())
+        looking = {"bonds", "tool_contact", "rock_friction"}
+        live = [engine.name for engine in self.live]
+        return (engines.runners({name: periods[name] for name in live if name in looking}),
+                engines.runners({name: periods[name] for name in live if name not in looking}))
 
     def _connect(self):
         for engine in self.live:
-            engine.last_iteration = O.iter
+            engine.last_iteration = O.iter - 1
             engine.connect()
         self.bodies.connect()
 
@@ -341,18 +343,17 @@ class Cutting:
         self.bonds.let_go()
         self.rock_friction.find_contacts()
         O.interactions.eraseNonReal()
-        collider = next(engine for engine in O.engines if isinstance(engine, InsertionSortCollider))
+        collider = engines.yade_engine(InsertionSortCollider)
         collider.doSort = True
         # Asked for, not awaited: until its next visit of its own the scene would have no half-found contacts at all.
         collider()
+        self.contact.look_around()
 
     def end_stage(self, folder):
         """Close the stage's books; before each further cycle put back the rock as the start-up left it."""
-        for engine in self.live:
-            if engine is not self.recorder:
+        for engine in (self.wear, self.damping, self.heat):
+            if engine:
                 engine.act()
-        if engines.failures:
-            raise engines.failures.pop()
         stored = self._stored_energy()
         for name, value in stored.items():
             self.book[name] += value - self.base[name]

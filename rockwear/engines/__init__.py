@@ -5,7 +5,7 @@ and the table of live engines below finds it.
 """
 from time import perf_counter
 
-from yade import O, PyRunner
+from yade import InteractionLoop, O, PyRunner
 
 _live = {}
 failures = []
@@ -48,17 +48,18 @@ class Engine:
         return {}
 
 
-def fire(name):
-    """One visit of the engine `name`, its wall time counted. PyRunner calls this."""
-    engine = _live[name]
-    begin = perf_counter()
-    try:
-        engine.act()
-    except Exception as error:
-        failures.append(error)
-        O.pause()
-    engine.wall_time += perf_counter() - begin
-    engine.visits += 1
+def fire(*names):
+    """One visit of each of the named engines, its wall time counted. PyRunner calls this."""
+    for name in names:
+        engine = _live[name]
+        begin = perf_counter()
+        try:
+            engine.act()
+        except Exception as error:
+            failures.append(error)
+            O.pause()
+        engine.wall_time += perf_counter() - begin
+        engine.visits += 1
 
 
 def enlist(engines):
@@ -68,16 +69,24 @@ def enlist(engines):
     _live.update({engine.name: engine for engine in engines})
 
 
-def runner(name, period):
-    """A PyRunner that visits the engine `name` every `period` steps."""
-    return PyRunner(command=f"import rockwear.engines; rockwear.engines.fire('{name}')", iterPeriod=int(period),
-                    label=f"{name}_runner")
+def runners(periods):
+    """PyRunners that visit engines at their periods: {name: steps}, in order. Engines of one period share a runner,
+    for a runner's own cost is that of several short visits."""
+    groups = {}
+    for name, period in periods.items():
+        groups.setdefault(int(period), []).append(name)
+    return [PyRunner(command=f"import rockwear.engines; rockwear.engines.fire({', '.join(map(repr, names))})",
+                     iterPeriod=period) for period, names in groups.items()]
 
 
-def law_functor(type_name):
-    """The contact law of that type in the scene that is in O now."""
-    loop = next(engine for engine in O.engines if type(engine).__name__ == "InteractionLoop")
-    return next(functor for functor in loop.lawDispatcher.functors if type(functor).__name__ == type_name)
+def yade_engine(kind):
+    """YADE's engine of the type `kind` in the scene that is in O now."""
+    return next(engine for engine in O.engines if isinstance(engine, kind))
+
+
+def law_functor(kind):
+    """The contact law of the type `kind` in the scene that is in O now."""
+    return next(functor for functor in yade_engine(InteractionLoop).lawDispatcher.functors if isinstance(functor, kind))
 
 
 def contact_energy(interactions):

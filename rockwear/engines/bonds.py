@@ -3,7 +3,8 @@ import math
 from collections import namedtuple
 
 import numpy as np
-from yade import FrictPhys, O
+from yade import (FrictPhys, Law2_ScGeom_FrictPhys_CundallStrack,
+                  Law2_ScGeom_JCFpmPhys_JointedCohesiveFrictionalPM, O)
 
 from . import Engine, contact_energy, law_functor
 
@@ -47,7 +48,7 @@ class Bonds(Engine):
 
     def connect(self):
         """Find the interactions of the scene that is in O now."""
-        self.law = law_functor("Law2_ScGeom_JCFpmPhys_JointedCohesiveFrictionalPM")
+        self.law = law_functor(Law2_ScGeom_JCFpmPhys_JointedCohesiveFrictionalPM)
         self.intact, self.broken = {}, {}
         for n, (i, j) in enumerate(self.pairs.tolist()):
             if self.status[n] != GONE:
@@ -133,25 +134,25 @@ class RockFriction(Engine):
     """Friction work between rock particles, and where it went.
 
     Broken bonds that slide, sampled at each visit (YADE's law keeps no account of them): |Ft| times the irreversible
-    slip (P 36), which is the slip less what a rising limit mu |Fn| lets the spring take up. To be visited before the
-    integrator, while the velocities are those that made the forces.
+    slip (P 36), which is the slip less what a rising limit mu |Fn| lets the spring take up. A force of one step works
+    over the mean of the velocities before and after it; to be visited before the integrator, which is foreseen.
     New contacts: exactly what YADE's Coulomb law dissipated since the last visit, shared out by |Ft| times slip.
     """
 
     name = "rock_friction"
-    refresh = 10
+    refresh = 100
     """Visits between two searches for new contacts."""
 
-    def __init__(self, bonds, particles):
+    def __init__(self, *, bonds, motion):
         super().__init__()
-        self.bonds = bonds
-        self.particles = particles
-        self.work = np.zeros(particles)
+        self.bonds, self.motion = bonds, motion
+        self.particles = len(motion.per_mass)
+        self.work = np.zeros(self.particles)
         self.sampled = 0.0
         self.booked = 0.0
 
     def connect(self):
-        self.law = law_functor("Law2_ScGeom_FrictPhys_CundallStrack")
+        self.law = law_functor(Law2_ScGeom_FrictPhys_CundallStrack)
         self.find_contacts()
 
     def find_contacts(self):
@@ -175,9 +176,10 @@ class RockFriction(Engine):
         self._share_exact_work()
 
     def _slip_power(self, interaction, force, tangential):
-        velocity = interaction.geom.incidentVel(interaction, True)
+        normal = interaction.geom.normal
+        velocity = interaction.geom.incidentVel(interaction, True) + 0.5 * self.motion.gain(interaction, normal)
         slip = -force.dot(velocity) / tangential
-        taken_up = -self.bonds.mu * self.bonds.kn / self.bonds.kt * interaction.geom.normal.dot(velocity)
+        taken_up = -self.bonds.mu * self.bonds.kn / self.bonds.kt * normal.dot(velocity)
         return tangential * max(slip - taken_up, 0.0)
 
     def _share_exact_work(self):
@@ -222,4 +224,4 @@ class RockFriction(Engine):
     def restore(self, state):
         self.work = state["work"].copy()
         self.sampled, self.booked = float(state["sampled"]), float(state["booked"])
-        law_functor("Law2_ScGeom_FrictPhys_CundallStrack").initPlasticDissipation(float(state["dissipation"]))
+        law_functor(Law2_ScGeom_FrictPhys_CundallStrack).initPlasticDissipation(float(state["dissipation"]))

@@ -2,65 +2,78 @@
 import math
 
 import numpy as np
-from yade import O, utils
+from yade import InsertionSortCollider, Law2_ScGeom_FrictViscoPhys_CundallStrackVisco, O
 
 from ..kernels.archard import worn_volume
-from . import Engine, contact_energy, law_functor
+from . import Engine, contact_energy, law_functor, yade_engine
 
 
 class ToolContact(Engine):
     """Samples the contacts of the tool's skin: force, friction work by particle, and who touches whom.
 
-    tool: the tool's bodies (see scene.ToolBodies); velocity: (2,) m/s.
+    tool: the tool's bodies (see scene.ToolBodies); motion: engines.motion.Foresight of the rock; velocity: (2,) m/s.
 
     The friction work since the last visit is exactly what YADE's law dissipated; |Ft| times slip of the contacts found
-    sliding now only says where it went, so that the shares add up to the whole. Tool work, F v dt, and the contact
-    dashpots, cn vn^2 dt, are sampled at each visit.
+    sliding now only says where it went, so that the shares add up to the whole. Tool work, F v dt, and the work of
+    the contact dashpots are sampled at each visit; a collision lasts about ten steps and does most of its work in the
+    first. Contacts are looked for only among those that the collider has found possible since it last ran.
     """
 
     name = "tool_contact"
 
-    def __init__(self, *, tool, particles, velocity):
+    def __init__(self, *, tool, motion, velocity):
         super().__init__()
-        self.tool, self.velocity = tool, velocity
+        self.tool, self.motion, self.velocity = tool, motion, np.asarray(velocity, float)
+        particles = len(motion.per_mass)
         self.tool_work = np.zeros(tool.count)
         self.rock_work = np.zeros(particles)
         self.wearing_work = np.zeros(tool.count)
         self.touching = {}
-        self.booked = self.friction_dissipated = 0.0
-        self.work_done = self.dashpot_dissipated = 0.0
+        self.booked = self.work_done = self.dashpot_dissipated = 0.0
         self.impulse = np.zeros(2)
-        self.force = np.zeros(2)
 
     def connect(self):
-        self.law = law_functor("Law2_ScGeom_FrictViscoPhys_CundallStrackVisco")
+        self.law = law_functor(Law2_ScGeom_FrictViscoPhys_CundallStrackVisco)
+        self.collider = yade_engine(InsertionSortCollider)
+        self.look_around()
+
+    def look_around(self):
+        """Note the contacts that the collider holds possible now."""
+        self.collided = self.collider.numAction
+        self.possible = []
+        for index, body in self.tool.body_of.items():
+            for interaction in O.interactions.withBodyAll(body):
+                first = interaction.id1 == body
+                self.possible.append((interaction, index, interaction.id2 if first else interaction.id1, first))
 
     def act(self):
         elapsed = self.elapsed()
-        ids = self.tool.ids
-        self.force = np.array([utils.sumForces(ids, (1, 0, 0)), utils.sumForces(ids, (0, 1, 0))])
-        self.impulse += self.force * elapsed
-        self.work_done -= float(self.force @ self.velocity) * elapsed
-        with_body, sliding = O.interactions.withBody, []
-        for index, body in self.tool.body_of.items():
-            for interaction in with_body(body):
-                rock = interaction.id1 if interaction.id2 == body else interaction.id2
-                phys = interaction.phys
-                self.touching[index, rock] = self.touching.get((index, rock), 0.0) + elapsed
-                if phys.cn > 0:
-                    self.dashpot_dissipated += elapsed * self._dashpot_power(interaction, phys, body, rock)
-                tangential = phys.shearForce.norm()
-                if tangential > 0 and tangential >= 0.999 * phys.tangensOfFrictionAngle * phys.normalForce.norm():
-                    sliding.append((index, rock, tangential * interaction.geom.shearInc.norm()))
-        self._share(sliding)
+        if self.collider.numAction != self.collided:
+            self.look_around()
+        sliding = []
+        for interaction, index, rock, tool_first in self.possible:
+            if interaction.isReal:
+                self._sample(interaction, index, rock, tool_first, elapsed, sliding)
+        if sliding:
+            self._share(sliding)
 
-    @staticmethod
-    def _dashpot_power(interaction, phys, body, rock):
-        """W of the force cn vn over the mean of vn before the step, which made it, and after."""
-        force = phys.normalViscous
-        apart = O.bodies[rock].state.vel - O.bodies[body].state.vel
-        after = apart if interaction.id2 == rock else -apart
-        return 0.5 * (force.squaredNorm() / phys.cn + force.dot(after))
+    def _sample(self, interaction, index, rock, tool_first, elapsed, sliding):
+        phys = interaction.phys
+        normal, shear = phys.normalForce, phys.shearForce
+        # YADE puts N + S on the second body and its opposite on the first.
+        sign = -elapsed if tool_first else elapsed
+        x, y = (normal[0] + shear[0]) * sign, (normal[1] + shear[1]) * sign
+        self.impulse[0] += x
+        self.impulse[1] += y
+        self.work_done -= x * self.velocity[0] + y * self.velocity[1]
+        self.touching[index, rock] = self.touching.get((index, rock), 0.0) + elapsed
+        if phys.cn > 0:
+            dashpot = phys.normalViscous
+            gain = dashpot.dot(self.motion.of(rock)) * (0.5 if tool_first else -0.5)
+            self.dashpot_dissipated += (dashpot.squaredNorm() / phys.cn + gain) * elapsed
+        tangential = shear.norm()
+        if tangential > 0 and tangential >= 0.999 * phys.tangensOfFrictionAngle * normal.norm():
+            sliding.append((index, rock, tangential * interaction.geom.shearInc.norm()))
 
     def _share(self, sliding):
         weight = math.fsum(w for _, _, w in sliding)
@@ -113,7 +126,7 @@ class ToolContact(Engine):
         self.touching = {(int(i), int(j)): t for i, j, t in state["touching"].tolist()}
         for name in ("booked", "work_done", "dashpot_dissipated"):
             setattr(self, name, float(state[name]))
-        law_functor("Law2_ScGeom_FrictViscoPhys_CundallStrackVisco").initPlasticDissipation(float(state["dissipation"]))
+        law_functor(Law2_ScGeom_FrictViscoPhys_CundallStrackVisco).initPlasticDissipation(float(state["dissipation"]))
 
 
 class Wear(Engine):

@@ -10,10 +10,11 @@ at their distance of bonding, as with the initial gaps g0 of P (6).
 Porosity is 1 − Σ V_i / V of nominal particle volumes, overlaps counted twice.
 """
 import math
+from collections import deque
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import brentq, minimize
+from scipy.optimize import brentq
 from scipy.spatial import cKDTree
 from scipy.stats import qmc
 
@@ -22,9 +23,11 @@ from rockwear.kernels.checks import positive, require, within
 
 SKIN = 0.6  # margin of the neighbour list, in least radii; a list lives until a particle has moved half of it
 FORCE_TOLERANCE = 1e-4  # unbalanced force to be reached, for unit contact stiffness, in least radii
-ENERGY_TOLERANCE = 1e-8  # or else the relative decrease of E in an iteration: discs on the chords of an arc hop a little
+ENERGY_TOLERANCE = 1e-8  # or else the relative decrease of E in MEMORY steps running: on the chords of an arc discs hop
 SETTLING = 0.3  # the same for a tiled specimen, over the mean overlap of its tile: what is left is near the walls
 MAX_ITERATIONS = 10_000
+LONGEST_STEP = 0.5  # of a particle in one direction, in least radii
+MEMORY = 10  # steps that L-BFGS remembers
 MAX_IMBALANCE = 0.05  # jammed packings end below 0.01, loose ones, where contacts hardly touch, above 0.1
 REGRADINGS = 2
 CORNER = math.radians(10)  # a boundary that turns by more at one vertex has a corner there
@@ -218,20 +221,60 @@ class _Energy:
         wall_energy, wall_push = self.container.press(x[self.at_wall], self.radii[self.at_wall])
         gradient[self.at_wall] += wall_push
         self.mean_force = overlap[overlap > 0].mean() / self.unit if (overlap > 0).any() else 0.0
-        return (0.5 * (overlap @ overlap) + wall_energy) / self.unit**2, gradient.ravel() / self.unit
+        return (0.5 * _dot(overlap, overlap) + wall_energy) / self.unit**2, gradient.ravel() / self.unit
+
+
+def _dot(a, b):
+    return np.einsum("i,i", a, b)  # in one thread, unlike a @ b
+
+
+def _minimise(energy, x, tolerance):
+    """A minimum of `energy`, a function x -> (value, gradient), near x: L-BFGS with backtracking.
+
+    Nocedal and Wright, Numerical Optimization, algorithms 7.4, 7.5 and 3.1, with no component of a step longer than
+    LONGEST_STEP. Not scipy's, whose sums are left to a threaded BLAS from scipy 1.15 on: there the packing of a seed
+    would depend on the number of threads, and on busy cores the waiting threads made it many times slower.
+    """
+    value, gradient = energy(x)
+    memory, stalled = deque(maxlen=MEMORY), 0
+    for _ in range(MAX_ITERATIONS):
+        if np.abs(gradient).max() <= tolerance:
+            return x
+        step = -gradient
+        weights = []
+        for dx, dg, curvature in reversed(memory):
+            weights.append(_dot(dx, step) / curvature)
+            step -= weights[-1] * dg
+        if memory:
+            dx, dg, curvature = memory[-1]
+            step *= curvature / _dot(dg, dg)
+        for (dx, dg, curvature), weight in zip(memory, reversed(weights)):
+            step += (weight - _dot(dg, step) / curvature) * dx
+        step *= min(1.0, LONGEST_STEP / np.abs(step).max())
+        slope = _dot(gradient, step)
+        while True:
+            new_value, new_gradient = energy(x + step)
+            if new_value <= value + 1e-4 * slope:
+                break
+            step, slope = 0.5 * step, 0.5 * slope
+        dg = new_gradient - gradient
+        curvature = _dot(step, dg)
+        if curvature > 0:
+            memory.append((step, dg, curvature))
+        x, gained, value, gradient = x + step, value - new_value, new_value, new_gradient
+        stalled = stalled + 1 if gained <= ENERGY_TOLERANCE * value else 0
+        if stalled == MEMORY:
+            return x
+    raise RuntimeError(f"{x.size} variables not at rest after {MAX_ITERATIONS} iterations")
 
 
 def _relax(container, positions, radii, tolerance=FORCE_TOLERANCE):
     """Positions (n, d) of least overlap energy near the given ones, and the imbalance left."""
     unit = radii.min()
     energy = _Energy(container, radii, unit)
-    options = {"maxiter": MAX_ITERATIONS, "maxfun": 2 * MAX_ITERATIONS, "gtol": tolerance,
-               "ftol": ENERGY_TOLERANCE}
-    found = minimize(energy, (positions / unit).ravel(), jac=True, method="L-BFGS-B", options=options)
-    if found.nit >= MAX_ITERATIONS:
-        raise RuntimeError(f"packing of {len(radii)} particles not at rest after {MAX_ITERATIONS} iterations")
-    _, gradient = energy(found.x)
-    relaxed = found.x.reshape(positions.shape) * unit
+    x = _minimise(energy, (positions / unit).ravel(), tolerance)
+    _, gradient = energy(x)
+    relaxed = x.reshape(positions.shape) * unit
     if container.period is not None:
         relaxed = _wrap(relaxed, container.period)
     unbalanced = np.linalg.norm(gradient.reshape(positions.shape), axis=1).mean()
@@ -339,7 +382,8 @@ def pack(*, box=None, polygon=None, radius_min, radius_max, porosity, seed, radi
         scale = scale_at(positions)
         radii = _fit_radii(radius, draws, scale, solid, dimensions)
         positions, imbalance = _relax(container, positions, radii)
-    require(imbalance <= MAX_IMBALANCE, "porosity", porosity, "lower for particles that hold each other: these are loose")
+    require(imbalance <= MAX_IMBALANCE, "porosity", porosity,
+            "lower for the particles to hold each other: at this one they are loose")
     return Packing(positions, radii, scale, imbalance, **where)
 
 
@@ -368,7 +412,8 @@ def tile(packing, repeats):
     """
     require(packing.box is not None and all(packing.periodic), "packing", f"periodic: {packing.periodic}",
             "periodic in all directions")
-    require(np.shape(repeats) == np.shape(packing.box) and all(isinstance(k, (int, np.integer)) and k > 0 for k in repeats),
+    counts = np.asarray(repeats)
+    require(counts.shape == (len(packing.box),) and counts.dtype.kind in "iu" and (counts > 0).all(),
             "repeats", repeats, "one positive integer a direction")
     corners = np.indices(repeats).reshape(len(repeats), -1).T * packing.box
     positions = (packing.positions + corners[:, None, :]).reshape(-1, len(repeats))

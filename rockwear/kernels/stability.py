@@ -119,7 +119,7 @@ def _largest_eigenvalue(matrix):
 
 def _positive_each(name, values, n, unit):
     array = np.asarray(values, dtype=float)
-    require(array.shape == (n,), name, f"array of shape {array.shape}", f"one value for each of the {n} particles", unit)
+    require(array.shape == (n,), name, f"array of shape {array.shape}", f"one value for each of {n} particles", unit)
     require((np.isfinite(array) & (array > 0)).all(), name, "array", "finite and greater than 0", unit)
     return array
 
