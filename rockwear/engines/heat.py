@@ -2,7 +2,6 @@
 import math
 
 import numpy as np
-from yade import O
 
 from ..kernels.surface import free_surface
 from . import Engine

@@ -144,11 +144,13 @@ class Wear(Engine):
         self.coefficient, self.mu, self.hardness, self.temperature = coefficient, mu, hardness, temperature
         self.on_removal = on_removal
         self.contact_energy_removed = 0.0
+        self.work_used = 0.0
 
     def act(self):
         work = self.contact.take_wearing_work()
         if not work.any():
             return
+        self.work_used += float(work.sum())
         volume = worn_volume(k=self.coefficient, mu=self.mu, work=work, hardness=self.hardness(self.temperature()))
         removed, uncovered = self.erosion.wear(volume)
         if removed:
@@ -163,10 +165,10 @@ class Wear(Engine):
         self.on_removal(gone)
 
     def state(self):
-        return {"contact_energy_removed": self.contact_energy_removed, **self.erosion.state()}
+        return {"contact_energy_removed": self.contact_energy_removed, "work_used": self.work_used, **self.erosion.state()}
 
     def restore(self, state):
-        self.contact_energy_removed = float(state["contact_energy_removed"])
+        self.contact_energy_removed, self.work_used = float(state["contact_energy_removed"]), float(state["work_used"])
         self.erosion.restore(state)
 
     def log(self):

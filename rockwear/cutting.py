@@ -1,0 +1,495 @@
+"""The cut: a rigid tooth of particles through bonded rock, with heat, wear and many cycles (M ch. 9-11, P 5)."""
+import math
+import shutil
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+from yade import InsertionSortCollider, O, utils
+
+from . import engines, scene
+from .engines.bonds import Bonds, RockFriction
+from .engines.heat import Heat
+from .engines.motion import BackgroundDamping, Foresight
+from .engines.record import Recorder, RunEnded, Watch
+from .engines.wear import ToolContact, Wear
+from .kernels.archard import BRINELL, KELVIN, MET71, MET91, Hardness
+from .kernels.checks import require
+from .kernels.conduction import HeatNetwork, calibrated_conductance, effusivity, effusivity_share
+from .kernels.outline import read_outline, tooth
+from .kernels.stability import critical_time_step
+from .materials import Material
+from .parameters import Parameter, above_zero, choice, flag, integer, number, text
+from .rock import Specimen
+from .tool import Tool
+
+HARDNESS = {"MET71": MET71, "MET91": MET91}
+
+PARAMETERS = [
+    # rock
+    Parameter("width", 0.109, "m", above_zero, "width of the specimen", "M 5.1"),
+    Parameter("height", 0.109, "m", above_zero, "height of the specimen", "M 5.1"),
+    Parameter("radius_min", 1e-3, "m", above_zero, "smallest radius of rock particles", "M 5.1"),
+    Parameter("radius_max", 1.5e-3, "m", above_zero, "largest radius of rock particles", "M 5.1"),
+    Parameter("porosity", 0.12, "", number(0), "1 - sum of particle areas over the box's area", "P 5.2"),
+    Parameter("seed", 1, "", integer(0), "of the packings of rock and tool"),
+    Parameter("coarsening", 1.0, "", number(1, 8), "factor by which radii grow below fine_depth; 1: uniform rock"),
+    Parameter("fine_depth", 0.035, "m", above_zero, "depth that keeps the fine particles"),
+    Parameter("bonding_gap", 1e-4, "m", number(0), "largest gap that is bonded", "P 6; the value is ours"),
+    Parameter("kn", 20e9, "N/m", above_zero, "normal stiffness of bonds and rock contacts", "M 5.1"),
+    Parameter("kt", 20e9, "N/m", above_zero, "tangential stiffness", "M 5.1"),
+    Parameter("Rn", 0.1e6, "N", above_zero, "tensile strength of a bond", "M 5.1"),
+    Parameter("Rt", 1e6, "N", above_zero, "shear strength of a bond", "M 5.1"),
+    Parameter("mu", 0.839, "", number(0), "friction between rock particles after breakage", "M 5.1"),
+    Parameter("rock_density", 2500.0, "kg/m3", above_zero, "bulk density of the rock", "M 7.4"),
+    Parameter("rock_specific_heat", 1970.0, "J/kgK", above_zero, "specific heat of the rock", "M 7.4"),
+    Parameter("rock_conductivity", 5.0, "W/mK", above_zero, "conductivity of the rock", "M 11.1"),
+    # tool
+    Parameter("tooth_height", 0.07, "m", above_zero, "height of the tooth", "ours: M shows it in a figure only"),
+    Parameter("tooth_width", 0.045, "m", above_zero, "width of the tooth at its top", "ours"),
+    Parameter("rake", 10.0, "deg", number(-80, 80), "rake angle, from the vertical", "ours"),
+    Parameter("clearance", 10.0, "deg", number(0, 80), "clearance angle, from the horizontal", "ours"),
+    Parameter("tip_radius", 2e-3, "m", above_zero, "rounding of the tip", "ours"),
+    Parameter("outline", "", "", text, "CSV file of x, y in m: a tooth of your own in place of the five above"),
+    Parameter("tool_radius_min", 0.4e-3, "m", above_zero, "smallest radius of tool particles", "M 9.2"),
+    Parameter("tool_radius_max", 0.52e-3, "m", above_zero, "largest radius of tool particles", "M 9.2"),
+    Parameter("tool_kn", 90e9, "N/m", above_zero, "normal stiffness of the tool-rock contact", "M 9.2"),
+    Parameter("tool_kt", 90e9, "N/m", above_zero, "tangential stiffness of the tool-rock contact", "as kn: M gives none"),
+    Parameter("tool_mu", 0.3, "", above_zero, "friction between tool and rock", "M 9.2"),
+    Parameter("contact_damping", 0.9, "", number(0, 1), "dashpot, as a fraction of the critical", "M 9.2"),
+    Parameter("tool_density", 7830.0, "kg/m3", above_zero, "density of the steel", "M 7.4"),
+    Parameter("tool_specific_heat", 450.0, "J/kgK", above_zero, "specific heat of the steel", "M 7.4"),
+    Parameter("tool_conductivity", 60.0, "W/mK", above_zero, "conductivity of the steel", "M 7.4"),
+    # motion
+    Parameter("velocity", 4.0, "m/s", above_zero, "cutting velocity", "M 9.2"),
+    Parameter("depth_of_cut", 0.01, "m", above_zero, "depth of cut", "ours"),
+    Parameter("approach", 0.5e-3, "m", number(0), "free way before the tool meets the rock", "ours"),
+    Parameter("start_up", 0.005, "s", above_zero, "time of the start-up cut", "M 9.1"),
+    Parameter("cycles", 3, "", integer(0), "cycles after the start-up, each on the rock that the start-up left"),
+    Parameter("cycle_time", 0.005, "s", above_zero, "time of a cycle", "ours"),
+    Parameter("background_damping", 500.0, "1/s", number(0), "global viscous damping, rate of decay", "ours: M gives none"),
+    # wear
+    Parameter("steel", "MET91", "", choice("MET71", "MET91"), "hardness table", "M 9.2, table 6.1"),
+    Parameter("hardness_temperature", -1.0, "K", number(-1), "constant hardness at this temperature; -1: the tool's own",
+              "M 9.2 took 293"),
+    Parameter("wear_coefficient", 0.01128, "", number(0), "Archard's k", "mean of M 6.14-6.15"),
+    Parameter("acceleration", 7000.0, "", number(0), "factor on k", "M 9.2"),
+    Parameter("removal", "volume", "", choice("volume", "depth"), "criterion: Archard's volume conserved, or the depth of M 6.5"),
+    # heat
+    Parameter("heat", True, "", flag, "heat, or a hardness at the tool's first temperature"),
+    Parameter("heat_fraction", 0.85, "", number(0, 1), "chi, the part of friction work that becomes heat", "P 5.2"),
+    Parameter("contact_conductance", 1500.0, "W/m2K", number(0), "between tool and rock", "P 5.2"),
+    Parameter("convection", 30.0, "W/m2K", number(0), "at the free surface, natural air", "M 7.5"),
+    Parameter("ambient_temperature", 293.15, "K", number(0), "of the air", "M 9.2"),
+    Parameter("rock_temperature", 293.15, "K", number(0), "of the rock at first", "M 9.2"),
+    Parameter("tool_temperature", 293.15, "K", number(0), "of the tool at first", "M 9.2"),
+    # accuracy against speed: defaults from make bench
+    Parameter("time_step_fraction", 0.8, "", number(1e-4, 1), "time step over the critical one", "make bench"),
+    Parameter("time_step", 0.0, "s", number(0), "time step itself; 0: by time_step_fraction"),
+    Parameter("sampling_period", 1, "steps", integer(1), "between samples of the tool's contacts", "make bench"),
+    Parameter("rock_sampling_period", 5, "steps", integer(1), "between samples of sliding rock contacts", "make bench"),
+    Parameter("wear_period", 100, "steps", integer(1), "between updates of wear and removal", "make bench"),
+    Parameter("heat_period", 1e-4, "s", above_zero, "between heat steps, each divided as stability asks", "make bench"),
+    Parameter("surface_period", 5e-4, "s", above_zero, "between searches for free surface and open cracks", "make bench"),
+    Parameter("damping_period", 500, "steps", integer(1), "between visits of the background damping", "make bench"),
+    Parameter("record_period", 2e-5, "s", above_zero, "between rows of history.csv"),
+]
+
+
+def parameters(**defaults):
+    """PARAMETERS with other defaults, for a scene of its own."""
+    unknown = set(defaults) - {parameter.name for parameter in PARAMETERS}
+    if unknown:
+        raise KeyError(f"no such parameter: {', '.join(sorted(unknown))}")
+    return [replace(p, default=defaults[p.name]) if p.name in defaults else p for p in PARAMETERS]
+
+
+class Cutting:
+    """A rigid tooth of particles cuts bonded rock: start-up, then cycles with the worn tooth put back (M 9.1).
+
+    values: {name: value} of all PARAMETERS. The constructor does all that can fail on a
+    parameter, without YADE's scene; `build` fills the scene.
+    """
+
+    def __init__(self, values):
+        self.values = values
+        v = self.v = SimpleNamespace(**values)
+        self.velocity = np.array([v.velocity, 0.0])
+        require(v.radius_max >= v.radius_min, "radius_max", v.radius_max, f"at least radius_min = {v.radius_min:g}", "m")
+        require(v.tool_radius_max >= v.tool_radius_min, "tool_radius_max", v.tool_radius_max,
+                f"at least tool_radius_min = {v.tool_radius_min:g}", "m")
+        require(v.tool_radius_max <= v.radius_min, "tool_radius_max", v.tool_radius_max,
+                f"at most the rock's radius_min = {v.radius_min:g}: a smooth tool needs finer particles (M 6.5)", "m")
+        require(2 * v.radius_max < v.depth_of_cut < v.height, "depth_of_cut", v.depth_of_cut,
+                f"more than a rock particle, {2 * v.radius_max:g}, and less than the specimen's height {v.height:g}", "m")
+        self._check_travel(v)
+        self.hardness = self._hardness(v)
+        self.rock_material = Material(density=v.rock_density, specific_heat=v.rock_specific_heat,
+                                      conductivity=v.rock_conductivity)
+        self.tool_material = Material(density=v.tool_density, specific_heat=v.tool_specific_heat,
+                                      conductivity=v.tool_conductivity)
+        vertices = read_outline(v.outline) if v.outline else tooth(
+            height=v.tooth_height, width=v.tooth_width, rake=math.radians(v.rake), clearance=math.radians(v.clearance),
+            tip_radius=v.tip_radius)
+        self._check_size(v, vertices)
+        self.rock = Specimen(width=v.width, height=v.height, radius_min=v.radius_min, radius_max=v.radius_max,
+                             porosity=v.porosity, seed=v.seed, bonding_gap=v.bonding_gap, coarsening=v.coarsening,
+                             fine_depth=v.fine_depth, density=v.rock_density)
+        self.rock.support("bottom", "right")
+        self.tool = Tool(vertices=vertices, radius_min=v.tool_radius_min, radius_max=v.tool_radius_max, seed=v.seed,
+                         removal=v.removal, material=self.tool_material)
+        self._choose_time_step(v)
+        bonds = len(self.rock.pairs)
+        # Chunks between canonical points depend on the scene alone, so that every run of it passes the same points.
+        self.chunk = int(min(2000, max(100, 12_000_000 // bonds)))
+        steps = {"start-up": v.start_up, **{f"cycle {n + 1}": v.cycle_time for n in range(v.cycles)}}
+        self.stages = [(name, max(1, round(seconds / self.time_step))) for name, seconds in steps.items()]
+        self.stage, self.clock = 0, 0.0
+        self.book = {"kinetic": 0.0, "elastic": 0.0, "contact_elastic": 0.0}
+
+    # ---- parameters
+
+    def _check_travel(self, v):
+        travel = (v.start_up + (v.cycle_time if v.cycles else 0.0)) * v.velocity
+        require(travel <= v.width, "cycle_time", v.cycle_time,
+                f"so short that the tool's travel, {travel:g} m at {v.velocity:g} m/s with the start-up, stays within the "
+                f"specimen's width {v.width:g} m", "s")
+
+    def _check_size(self, v, vertices):
+        width, height = np.ptp(vertices, axis=0)
+        require(width <= v.width, "tooth_width", float(width), f"at most the specimen's width {v.width:g}", "m")
+        require(height <= v.height, "tooth_height", float(height), f"at most the specimen's height {v.height:g}", "m")
+        require(height > v.depth_of_cut, "tooth_height", float(height), f"more than depth_of_cut = {v.depth_of_cut:g}", "m")
+
+    def _hardness(self, v):
+        table = HARDNESS[v.steel]
+        low, high = table.limits
+        for name in ("tool_temperature", "rock_temperature", "ambient_temperature"):
+            value = getattr(v, name)
+            require(low <= value <= high, name, value, f"inside the hardness table of {v.steel}, {low:g} to {high:g}", "K")
+        if v.hardness_temperature >= 0:
+            require(low <= v.hardness_temperature <= high, "hardness_temperature", v.hardness_temperature,
+                    f"inside the hardness table of {v.steel}, {low:g} to {high:g}, or -1 for the tool's own", "K")
+            return Hardness.constant(table(v.hardness_temperature))
+        return Hardness(table.kelvin - KELVIN, table.pascal / BRINELL)
+
+    def _choose_time_step(self, v):
+        rock = self.rock
+        common = dict(positions=rock.positions, radii=rock.radii, masses=rock.masses, inertias=rock.inertias,
+                      bonds=rock.pairs, kn=v.kn, kt=v.kt, fixed=np.flatnonzero(rock.supported))
+        self.bonded_step = critical_time_step(**common)
+        # A disc that a damped tool contact presses: the whole of its bonds and two tool particles at once.
+        lightest = float(rock.masses[~rock.supported].min())
+        highest = math.hypot(2 / self.bonded_step, math.sqrt(2 * v.tool_kn / lightest))
+        xi = v.contact_damping
+        self.contact_step = 2 / highest * (math.sqrt(1 + xi * xi) - xi)
+        self.critical_step = min(self.bonded_step, self.contact_step)
+        if v.time_step > 0:
+            require(v.time_step <= self.critical_step, "time_step", v.time_step,
+                    f"at most the stable step {self.critical_step:.3e} of this scene", "s")
+            self.time_step = v.time_step
+        else:
+            self.time_step = v.time_step_fraction * self.critical_step
+
+    # ---- YADE
+
+    def build(self):
+        """Fill YADE's scene: bodies, bonds, engines; the tool in front of the rock."""
+        O.reset()
+        v, rock = self.v, self.rock
+        scene.put_materials(mu=v.mu, tool_mu=v.tool_mu, contact_damping=v.contact_damping)
+        scene.put_rock(rock)
+        scene.put_loop(kn=v.kn, kt=v.kt, mu=v.mu, tool_kn=v.tool_kn, tool_kt=v.tool_kt, tool_mu=v.tool_mu)
+        self._make_engines()
+        scene.make_bonds(rock, self.bonds)
+        self.bodies.offset = np.array([-v.approach, v.height - v.depth_of_cut])
+        self.bodies.offset[0] -= self.tool.foremost(below=v.depth_of_cut + 2 * v.radius_max)
+        self.bodies.add(sorted(self.tool.erosion.skin))
+        O.dt = self.time_step
+        before, after = self._runners()
+        O.engines = O.engines[:-1] + before + O.engines[-1:] + after
+        self._connect()
+        self.first_iteration = O.iter
+        if self.heat:
+            self.heat.begin()
+        self.base = self._stored_energy()
+        self.canonical()
+
+    def _make_engines(self):
+        v, rock, tool = self.v, self.rock, self.tool
+        self.bodies = scene.ToolBodies(tool, self.velocity)
+        self.bonds = Bonds(pairs=rock.pairs, kn=v.kn, kt=v.kt, mu=v.mu, normal_strength=v.Rn * rock.strength_factor,
+                           shear_strength=v.Rt * rock.strength_factor, clock=lambda: self.time)
+        motion = Foresight(masses=rock.masses, inertias=rock.inertias, radii=rock.radii, held=rock.supported)
+        self.rock_friction = RockFriction(bonds=self.bonds, motion=motion)
+        self.contact = ToolContact(tool=self.bodies, motion=motion, velocity=self.velocity)
+        self.wear = Wear(contact=self.contact, erosion=tool.erosion, tool=self.bodies, mu=v.tool_mu,
+                         coefficient=v.wear_coefficient * v.acceleration, hardness=self.hardness,
+                         temperature=self._tool_temperature, on_removal=self._on_removal)
+        self.heat = self._heat() if v.heat else None
+        self.damping = BackgroundDamping(rate=v.background_damping, bodies=range(rock.count)) if v.background_damping else None
+        self.recorder = Recorder([self._log, self.wear.log, self.bonds.log] + ([self.heat.log] if self.heat else []))
+        kick = 0.5 * float(rock.masses.max()) * v.velocity**2
+        self.watch = Watch(work=lambda: self.contact.work_done, floor=50 * kick)
+        self.live = [e for e in (self.bonds, self.contact, self.rock_friction, self.wear, self.heat, self.damping,
+                                 self.recorder, self.watch) if e]
+        engines.enlist(self.live)
+
+    def _heat(self):
+        v, rock, tool = self.v, self.rock, self.tool
+        rock_share = calibrated_conductance(positions=rock.positions, edges=rock.pairs, conductance=1.0,
+                                            conductivity=v.rock_conductivity)[0]
+        capacity = np.concatenate([rock.masses * v.rock_specific_heat, tool.masses * v.tool_specific_heat])
+        temperature = np.repeat([v.rock_temperature, v.tool_temperature], [rock.count, tool.count])
+        network = HeatNetwork(capacity=capacity, temperature=temperature, edges=rock.pairs, conductance=rock_share)
+        e_tool, e_rock = (effusivity(m.conductivity, m.density, m.specific_heat)
+                          for m in (self.tool_material, self.rock_material))
+        return Heat(network=network, bonds=self.bonds, rock_friction=self.rock_friction, tool_contact=self.contact,
+                    rock=rock, tool=tool, heat_fraction=v.heat_fraction,
+                    tool_share=effusivity_share(e_tool, e_rock),
+                    contact_conductance=v.contact_conductance, convection=v.convection, ambient=v.ambient_temperature,
+                    rock_conductance=rock_share, surface_period=v.surface_period)
+
+    def _runners(self):
+        """Runners before and after the integrator: what looks at this step's forces, and what changes the scene."""
+        v, dt = self.v, self.time_step
+        periods = {"bonds": 1, "tool_contact": v.sampling_period, "rock_friction": v.rock_sampling_period,
+                   "wear": v.wear_period, "heat": max(1, round(v.heat_period / dt)),
+                   "background_damping": v.damping_period, "recorder": max(1, round(v.record_period / dt)), "watch": 200}
+        looking = {"bonds", "tool_contact", "rock_friction"}
+        live = [engine.name for engine in self.live]
+        return (engines.runners({name: periods[name] for name in live if name in looking}),
+                engines.runners({name: periods[name] for name in live if name not in looking}))
+
+    def _connect(self):
+        for engine in self.live:
+            engine.last_iteration = O.iter - 1
+            engine.connect()
+        self.bodies.connect()
+
+    def _tool_temperature(self):
+        return self.heat.tool_temperature() if self.heat else np.full(self.tool.count, self.v.tool_temperature)
+
+    def _on_removal(self, indices):
+        if self.heat:
+            self.heat.remove(indices)
+        if not self.bodies.body_of:
+            raise RunEnded(f"the tool is worn away at t = {self.time:g} s", True)
+
+    # ---- stages
+
+    @property
+    def step(self):
+        """Steps of the present stage that are done."""
+        return O.iter - self.first_iteration
+
+    @property
+    def time(self):
+        """Simulated seconds over all stages."""
+        return self.clock + self.step * self.time_step
+
+    @property
+    def finished(self):
+        """True after the last stage."""
+        return self.stage >= len(self.stages)
+
+    @property
+    def stage_done(self):
+        """True when the present stage has run all its steps."""
+        return self.step >= self.stages[self.stage][1]
+
+    def run_chunk(self):
+        """Run to the next canonical point. Raises what an engine raised, RunEnded among it."""
+        O.run(min(self.chunk, self.stages[self.stage][1] - self.step), True)
+        if engines.failures:
+            raise engines.failures.pop()
+        self.canonical()
+
+    def canonical(self):
+        """Bring YADE into the one state that a saved and loaded scene has too: no half-found contacts, bounds fresh.
+
+        Without it a loaded scene finds contacts in another order, sums forces in another order, and differs in the
+        last digit at first and in everything soon.
+        """
+        self.bonds.let_go()
+        self.rock_friction.find_contacts()
+        O.interactions.eraseNonReal()
+        collider = engines.yade_engine(InsertionSortCollider)
+        collider.doSort = True
+        # Asked for, not awaited: until its next visit of its own the scene would have no half-found contacts at all.
+        collider()
+        self.contact.look_around()
+
+    def end_stage(self, folder):
+        """Close the stage's books; before each further cycle put back the rock as the start-up left it."""
+        for engine in (self.wear, self.damping, self.heat):
+            if engine:
+                engine.act()
+        stored = self._stored_energy()
+        for name, value in stored.items():
+            self.book[name] += value - self.base[name]
+        self.clock, self.first_iteration = self.time, O.iter
+        self.stage += 1
+        if self.stage == 1:
+            self.canonical()
+            O.save(str(folder / "start_up.yade.gz"))
+            self.start = {"bonds": self.bonds.state(), "bodies": self.bodies.state()}
+            if self.heat:
+                self.start["rock_temperature"] = self.heat.network.temperature[:self.rock.count].copy()
+        elif not self.finished:
+            self._put_back(folder)
+        self.base = self._stored_energy()
+
+    def _put_back(self, folder):
+        """The rock of the start-up's end, and in it the tool as it is worn now (M 9.1)."""
+        friction = self.contact.friction, self.rock_friction.law.plasticDissipation()
+        released, alive = self.bonds.energy_released, self.tool.erosion.alive
+        O.load(str(folder / "start_up.yade.gz"))
+        self.bonds.restore(self.start["bonds"])
+        self.bonds.energy_released = released
+        self.bodies.restore(self.start["bodies"])
+        self._connect()
+        self.first_iteration = O.iter
+        self.bodies.erase([i for i in self.bodies.body_of if not alive[i]])
+        self.bodies.add([i for i in sorted(self.tool.erosion.skin) if i not in self.bodies.body_of])
+        self.contact.law.initPlasticDissipation(friction[0])
+        self.rock_friction.law.initPlasticDissipation(friction[1])
+        if self.heat:
+            self.heat.replace_rock(self.start["rock_temperature"])
+            self.heat.find_surfaces()
+        self.canonical()
+
+    # ---- what a checkpoint holds
+
+    def state(self):
+        """All of ours that a restart needs, beside YADE's scene."""
+        state = {"stage": self.stage, "first_iteration": self.first_iteration, "clock": self.clock, "book": self.book,
+                 "base": self.base, "bodies": self.bodies.state(), "start": getattr(self, "start", {}),
+                 "engines": {engine.name: engine.state() for engine in self.live},
+                 "last_iteration": {engine.name: engine.last_iteration for engine in self.live}}
+        return state
+
+    def save(self, directory, folder):
+        """Write YADE's scenes into `directory` of a checkpoint."""
+        O.save(str(directory / "scene.yade.gz"))
+        if self.stage > 0:
+            shutil.copy(folder / "start_up.yade.gz", directory)
+
+    def restore(self, state, directory, folder):
+        """Go back to a checkpoint: `state`, and YADE's scenes in `directory`."""
+        if (directory / "start_up.yade.gz").exists():
+            shutil.copy(directory / "start_up.yade.gz", folder)
+        O.load(str(directory / "scene.yade.gz"))
+        self._make_engines()
+        self.stage, self.first_iteration, self.clock = int(state["stage"]), int(state["first_iteration"]), float(state["clock"])
+        self.book = {name: float(value) for name, value in state["book"].items()}
+        self.base = {name: float(value) for name, value in state["base"].items()}
+        self.start = state["start"] if "start" in state else {}
+        self.bodies.restore(state["bodies"])
+        for engine in self.live:
+            engine.restore(state["engines"].get(engine.name, {}))
+        self._connect()
+        for engine in self.live:
+            engine.last_iteration = int(state["last_iteration"][engine.name])
+
+    # ---- books
+
+    def _stored_energy(self):
+        return {"kinetic": utils.kineticEnergy(), "elastic": self.bonds.elastic_energy(),
+                "contact_elastic": self.contact.elastic_energy() + self.rock_friction.elastic_energy()}
+
+    def energy_audit(self):
+        """J per metre of thickness: the tool's work, where it went, and what the account misses."""
+        now = self._stored_energy()
+        audit = {"tool_work": self.contact.work_done}
+        audit.update({name: self.book[name] + now[name] - self.base[name] for name in now})
+        audit["tool_friction"] = self.contact.friction
+        audit["rock_friction"] = self.rock_friction.total
+        audit["contact_dashpots"] = self.contact.dashpot_dissipated
+        audit["bond_breaking"] = self.bonds.energy_released
+        audit["background_damping"] = self.damping.dissipated if self.damping else 0.0
+        audit["removed_contacts"] = self.wear.contact_energy_removed
+        audit["residual"] = audit["tool_work"] - math.fsum(list(audit.values())[1:])
+        return audit
+
+    def mass_audit(self):
+        """kg per metre of thickness: the volume book of the erosion times the tool's density."""
+        book = self.tool.erosion.volume_balance()
+        return {"initial": self.tool.area * self.tool.density, **{k: v * self.tool.density for k, v in book.items()}}
+
+    def _log(self):
+        impulse = self.contact.take_impulse()
+        elapsed = self.recorder.elapsed()
+        force = impulse / elapsed if elapsed else impulse
+        return {"time": (self.time, "s"), "stage": (self.stage, "-"), "cutting_force": (-force[0], "N/m"),
+                "thrust_force": (force[1], "N/m"), "tool_work": (self.contact.work_done, "J/m"),
+                "kinetic_energy": (utils.kineticEnergy(), "J/m"), "tool_friction": (self.contact.friction, "J/m"),
+                "bond_breaking": (self.bonds.energy_released, "J/m")}
+
+    # ---- what a run's folder shows
+
+    def model(self):
+        """Arrays that stay the same all through a run."""
+        rock, tool = self.rock, self.tool
+        return {"rock_radii": rock.radii, "rock_supported": rock.supported, "bonds": rock.pairs, "tool_radii": tool.radii,
+                "tool_positions": tool.positions, "tool_volumes": tool.volumes, "outline": tool.vertices,
+                "box": np.array([rock.width, rock.height])}
+
+    def snapshot(self):
+        """Arrays that show the scene now."""
+        rock, erosion = self.rock, self.tool.erosion
+        broken = np.bincount(rock.pairs[self.bonds.status != 0].ravel(), minlength=rock.count)
+        temperature = self.heat.network.temperature if self.heat else np.empty(0)
+        self.bodies.connect()
+        return {"time": self.time, "stage": self.stage, "rock_positions": rock.current_positions(),
+                "broken_bonds": broken, "status": self.bonds.status, "temperature": temperature,
+                "tool_offset": self.bodies.offset, "alive": erosion.alive,
+                "worn_depth": erosion.stored / (2 * self.tool.radii), "skin": np.array(sorted(erosion.skin), int)}
+
+    def progress(self):
+        """A few words on how it stands."""
+        words = [f"{self.bonds.log()['tensile_cracks'][0] + self.bonds.log()['shear_cracks'][0]} cracks",
+                 f"{100 * self.tool.erosion.mass_fraction_lost:.2f} % of the tool worn"]
+        if self.heat:
+            words.append(f"hottest {self.heat.log()['tool_temperature_max'][0] - KELVIN:.0f} C")
+        return ", ".join(words)
+
+    def results(self):
+        """{name: (value, unit)} of the run."""
+        v, header = self.v, self.recorder.header
+        rows = np.array(self.recorder.rows, float).reshape(-1, max(1, len(header)))
+        columns = {name.split(" [")[0]: rows[:, i] for i, name in enumerate(header)}
+        cutting = columns.get("cutting_force", np.zeros(1))
+        travel = self.time * v.velocity
+        found = {"simulated_time": (self.time, "s"), "time_step": (self.time_step, "s"),
+                 "critical_time_step": (self.critical_step, "s"), "bonded_critical_time_step": (self.bonded_step, "s"),
+                 "mean_cutting_force": (float(cutting.mean()), "N/m"), "peak_cutting_force": (float(cutting.max()), "N/m"),
+                 "mean_thrust_force": (float(columns.get("thrust_force", np.zeros(1)).mean()), "N/m"),
+                 "specific_energy": (self.contact.work_done / (v.depth_of_cut * travel) if travel else 0.0, "J/m3"),
+                 "mass_lost": (self.tool.erosion.mass_fraction_lost, "-"),
+                 "worn_volume": (self.tool.erosion.archard_volume, "m3/m"),
+                 "particles_removed": (int(np.sum(~self.tool.erosion.alive)), "-"),
+                 **self.bonds.log(), **{f"rock_{k}": value for k, value in self.rock.report().items()},
+                 "tool_particles": (self.tool.count, "-")}
+        if self.heat:
+            for name in ("tool_temperature_max", "rock_temperature_max"):
+                found[name] = (float(np.nanmax(columns[name])) if name in columns else math.nan, "K")
+        return found
+
+    def friction_audit(self):
+        """J per metre of thickness: the tool's friction as YADE's law dissipated it, and as it was shared out to particles.
+
+        `waiting` is what the law dissipated while no contact was found sliding; it goes to the next that slides.
+        """
+        dissipated, shared = self.contact.friction, self.contact.booked
+        return {"dissipated": dissipated, "shared": shared, "waiting": dissipated - shared,
+                "worn_by": self.wear.work_used + float(self.contact.wearing_work.sum())}
+
+    def audits(self):
+        """Energy, friction, mass and heat books."""
+        books = {"energy": (self.energy_audit(), "J/m"), "friction": (self.friction_audit(), "J/m"),
+                 "mass": (self.mass_audit(), "kg/m")}
+        if self.heat:
+            books["heat"] = (self.heat.balance(), "J/m")
+        return books
+

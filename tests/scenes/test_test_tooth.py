@@ -1,0 +1,168 @@
+"""The main scene in miniature: it runs, its books close, it resumes to the last bit, and it pays only for what it uses."""
+import json
+import signal
+
+import numpy as np
+import pytest
+
+from .conftest import ROOT, SMALL, arguments, history, interrupt, run_script, test_tooth
+
+TINY = dict(start_up=2e-4, cycles=0)
+
+
+@pytest.fixture(scope="module")
+def cut(tmp_path_factory):
+    """One run of the miniature, to its end."""
+    return test_tooth(tmp_path_factory.mktemp("cut") / "out", checkpoint_interval=0.3)
+
+
+def value(run, name):
+    return run.summary["results"][name]["value"]
+
+
+def test_it_ends_well_and_leaves_the_whole_folder(cut):
+    assert cut.code == 0, cut.stderr
+    assert cut.summary["ended"] == "finished"
+    for name in ("summary.json", "history.csv", "report.html", "model.npz", "checkpoint/current.json"):
+        assert (cut.out / name).stat().st_size > 0
+    assert len(list((cut.out / "snapshots").glob("*.npz"))) >= 4
+    assert set(SMALL) <= set(cut.summary["parameters"])
+    assert cut.summary["peak_memory"]["value"] > 1e7
+
+
+def test_the_rock_breaks_and_the_tool_heats_and_wears(cut):
+    assert value(cut, "tensile_cracks") > 20
+    assert value(cut, "mean_cutting_force") > 1e4
+    assert value(cut, "tool_temperature_max") > 293.2
+    assert value(cut, "worn_volume") > 0
+
+
+def test_energy_audit(cut):
+    book = cut.summary["audits"]["energy"]
+    assert book["tool_work"] > 100
+    # Fewer than 10^4 steps and a handful of impacts: what YADE's step-by-step account of friction leaves open is
+    # larger than in a real run, whose target is 1 %.
+    assert abs(book["residual"]) < 0.02 * book["tool_work"]
+
+
+def test_heat_book_closes_to_round_off(cut):
+    book = cut.summary["audits"]["heat"]
+    assert book["generated"] > 10
+    content = 1e7  # J of heat held above 0 K, of which the stored heat is the difference
+    assert abs(book["residual"]) < 1e-12 * content
+    found = book["generated"] / (0.85 * sum(cut.summary["audits"]["energy"][name] for name in ("tool_friction", "rock_friction")))
+    assert found == pytest.approx(1, abs=0.01)
+
+
+def test_friction_shared_out_is_what_the_law_dissipated(cut):
+    book = cut.summary["audits"]["friction"]
+    assert book["dissipated"] > 1
+    assert book["shared"] + book["waiting"] == pytest.approx(book["dissipated"], rel=1e-12)
+    assert abs(book["waiting"]) < 1e-3 * book["dissipated"]
+    assert book["worn_by"] == pytest.approx(book["shared"], rel=1e-9)
+
+
+def test_mass_book_closes_to_round_off(cut):
+    book = cut.summary["audits"]["mass"]
+    assert book["archard"] > 0
+    assert abs(book["unexplained"]) < 1e-12 * book["initial"]
+
+
+def test_a_constant_hardness_gives_archards_volume(tmp_path):
+    """V = k F s / H with F s = W / mu, from the run's own friction work."""
+    run = test_tooth(tmp_path / "out", hardness_temperature=473.15, acceleration=100, wear_period=1, **{**TINY, "start_up": 6e-4})
+    hardness = 509 * 9.80665e6
+    exact = 0.01128 * 100 / 0.3 * run.summary["audits"]["friction"]["worn_by"] / hardness
+    assert value(run, "worn_volume") == pytest.approx(exact, rel=1e-12)
+
+
+def test_without_heat_there_is_no_heat_engine(tmp_path):
+    run = test_tooth(tmp_path / "out", heat="false", **TINY)
+    assert run.code == 0, run.stderr
+    assert "heat" not in run.summary["wall_time"]["by_engine"] and "heat" not in run.summary["audits"]
+
+
+def test_killed_and_stopped_and_resumed_equals_never_stopped(cut, tmp_path):
+    out = tmp_path / "out"
+    options = dict(checkpoint_interval=0.3)
+    killed = interrupt(out, signal.SIGKILL, 3, **options)
+    assert killed.code == -signal.SIGKILL and not (out / "summary.json").exists()
+    stopped = interrupt(out, signal.SIGTERM, 5, **options)
+    assert stopped.code == 128 + signal.SIGTERM and "--resume" in stopped.stdout
+    stopped = interrupt(out, signal.SIGINT, 7, **options)
+    assert stopped.code == 128 + signal.SIGINT
+    resumed = test_tooth(out, "--resume", **options)
+    assert resumed.code == 0, resumed.stderr
+    assert resumed.summary["results"] == cut.summary["results"]
+    assert resumed.summary["audits"] == cut.summary["audits"]
+    assert (out / "history.csv").read_bytes() == (cut.out / "history.csv").read_bytes()
+
+
+def test_another_seed_is_another_rock(cut, tmp_path):
+    run = test_tooth(tmp_path / "out", seed=2, **TINY)
+    assert value(run, "rock_bonds") != value(cut, "rock_bonds")
+
+
+def test_truncated_and_foreign_checkpoints_are_refused(tmp_path):
+    out = tmp_path / "out"
+    assert test_tooth(out, **TINY).code == 0
+    foreign = test_tooth(out, "--resume", **TINY, Rn=2e5)
+    assert foreign.code == 2 and "Rn is 100000.0 there and 200000.0 here" in foreign.stderr
+    scene = next((out / "checkpoint").glob("*/scene.yade.gz"))
+    scene.write_bytes(scene.read_bytes()[:1000])
+    cut_short = test_tooth(out, "--resume", **TINY)
+    assert cut_short.code == 2 and "scene.yade.gz is missing or damaged" in cut_short.stderr
+    (out / "checkpoint/current.json").write_text("{")
+    assert test_tooth(out, "--resume", **TINY).code == 2
+    for run in (foreign, cut_short):
+        errors = [line for line in run.stderr.splitlines() if line.startswith("error: ")]
+        assert len(errors) == 1 and "Traceback" not in run.stderr
+
+
+def test_a_tool_worn_away_ends_cleanly(tmp_path):
+    run = test_tooth(tmp_path / "out", acceleration=1e9, heat_period=1e-5, **{**TINY, "start_up": 1e-3})
+    assert run.code == 0, run.stderr
+    assert "worn away" in run.summary["ended"] and "worn away" in run.stdout
+    assert value(run, "mass_lost") > 0.9
+    assert abs(run.summary["audits"]["mass"]["unexplained"]) < 1e-12 * run.summary["audits"]["mass"]["initial"] * 1e6
+
+
+def test_a_simulation_that_blows_up_ends_in_one_line(tmp_path):
+    out = tmp_path / "out"
+    run = run_script(ROOT / "tests/scenes/scripts/blow_up.py", *arguments({**SMALL, **TINY, "start_up": 1e-3}), "--out",
+                     str(out), out=out)
+    assert run.code == 1
+    assert "blew up" in run.stderr and "Traceback" not in run.stderr
+    assert (out / "checkpoint/current.json").exists()
+
+
+def test_both_removal_rules_report_what_they_differ_by(tmp_path):
+    runs = {rule: test_tooth(tmp_path / rule, removal=rule, acceleration=3e5, **{**TINY, "start_up": 8e-4})
+            for rule in ("volume", "depth")}
+    for run in runs.values():
+        assert value(run, "particles_removed") > 3
+    unexplained = {rule: run.summary["audits"]["mass"]["unexplained"] / run.summary["audits"]["mass"]["archard"]
+                   for rule, run in runs.items()}
+    assert abs(unexplained["volume"]) < 1e-12
+    assert unexplained["depth"] < -0.01
+
+
+def test_a_table_of_yade_batch_gives_a_folder_a_row(tmp_path):
+    table = tmp_path / "table.txt"
+    values = {**SMALL, **TINY}
+    table.write_text(" ".join(["description", *values, "Rn", "out"]) + "\n"
+                     + " ".join(["weak", *map(str, values.values()), "0.1e6", str(tmp_path / "sweep")]) + "\n"
+                     + " ".join(["strong", *map(str, values.values()), "0.2e6", str(tmp_path / "sweep")]) + "\n")
+    import subprocess
+    done = subprocess.run(["yade-batch", "-j2", "--job-threads=1", str(table), str(ROOT / "yade_scripts/test_tooth.py")],
+                          cwd=tmp_path, capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=120)
+    found = {name: json.loads((tmp_path / "sweep" / name / "summary.json").read_text())["parameters"]["Rn"]
+             for name in ("weak", "strong")}
+    assert found == {"weak": 0.1e6, "strong": 0.2e6}, done.stdout + done.stderr
+
+
+def test_history_has_units_and_rises_in_time(cut):
+    columns = history(cut.out)
+    assert all("[" in name for name in columns)
+    assert np.all(np.diff(columns["time [s]"]) > 0)
+    assert np.all(np.diff(columns["mass_lost [-]"]) >= 0)
