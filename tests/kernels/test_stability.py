@@ -83,7 +83,7 @@ def test_chain(n):
 
 
 def test_triangular_lattice():
-    """kt = 0: the dispersion relation ends at Ω² = 6 kn/m (edge of the zone); a large patch approaches it from below."""
+    """kt = 0: the dispersion relation ends at Ω² = 6 kn/m; a large patch approaches it from below."""
     a, b = np.meshgrid(np.arange(40), np.arange(40))
     x = np.column_stack([(a + 0.5 * (b % 2)).ravel(), (math.sqrt(0.75) * b).ravel()])
     bonds = contacts(x, np.full(len(x), 0.5), 1e-9)
