@@ -477,13 +477,14 @@ class Cutting:
         return found
 
     def friction_audit(self):
-        """J per metre of thickness: the tool's friction as YADE's law dissipated it, and as it was shared out to particles.
+        """J per metre of thickness: friction as YADE's laws dissipated it, and as it was shared out to particles.
 
-        `waiting` is what the law dissipated while no contact was found sliding; it goes to the next that slides.
+        `waiting` is what a law dissipated while no contact was found sliding; it goes to the next that slides.
         """
-        dissipated, shared = self.contact.friction, self.contact.booked
-        return {"dissipated": dissipated, "shared": shared, "waiting": dissipated - shared,
-                "worn_by": self.wear.work_used + float(self.contact.wearing_work.sum())}
+        tool, rock = self.contact, self.rock_friction
+        return {"tool": tool.friction, "tool_shared": tool.booked, "tool_waiting": tool.friction - tool.booked,
+                "worn_by": self.wear.work_used + float(tool.wearing_work.sum()),
+                "rock": rock.total, "rock_shared": rock.shared, "rock_waiting": rock.total - rock.shared}
 
     def audits(self):
         """Energy, friction, mass and heat books."""

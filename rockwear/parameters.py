@@ -107,7 +107,7 @@ def _arguments(arguments, known):
 
 def _table_row():
     """The row of a yade-batch table that this run is for, as {column: text}; nothing outside a batch."""
-    place = os.environ.get("PARAM_TABLE")
+    place = os.environ.get("YADE_BATCH")
     if not place:
         return {}
     from yade.utils import TableParamReader
@@ -118,7 +118,7 @@ def _table_row():
 
 def batch_row():
     """The name of the row that yade-batch runs, or None outside a batch."""
-    place = os.environ.get("PARAM_TABLE")
+    place = os.environ.get("YADE_BATCH")
     if not place:
         return None
     from yade.utils import TableParamReader

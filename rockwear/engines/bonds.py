@@ -217,6 +217,11 @@ class RockFriction(Engine):
         """All friction work between rock particles so far, J."""
         return self.sampled + self.law.plasticDissipation()
 
+    @property
+    def shared(self):
+        """Friction work that has been given to particles so far, J."""
+        return self.sampled + self.booked
+
     def state(self):
         return {"work": self.work, "sampled": self.sampled, "booked": self.booked,
                 "dissipation": self.law.plasticDissipation()}

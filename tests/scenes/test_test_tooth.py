@@ -1,6 +1,7 @@
 """The main scene in miniature: it runs, its books close, it resumes to the last bit, and it pays only for what it uses."""
 import json
 import signal
+import subprocess
 
 import numpy as np
 import pytest
@@ -50,16 +51,17 @@ def test_heat_book_closes_to_round_off(cut):
     assert book["generated"] > 10
     content = 1e7  # J of heat held above 0 K, of which the stored heat is the difference
     assert abs(book["residual"]) < 1e-12 * content
-    found = book["generated"] / (0.85 * sum(cut.summary["audits"]["energy"][name] for name in ("tool_friction", "rock_friction")))
-    assert found == pytest.approx(1, abs=0.01)
+    friction = cut.summary["audits"]["friction"]
+    assert book["generated"] == pytest.approx(0.85 * (friction["tool_shared"] + friction["rock_shared"]), rel=1e-9)
 
 
-def test_friction_shared_out_is_what_the_law_dissipated(cut):
+def test_friction_shared_out_is_what_the_laws_dissipated(cut):
     book = cut.summary["audits"]["friction"]
-    assert book["dissipated"] > 1
-    assert book["shared"] + book["waiting"] == pytest.approx(book["dissipated"], rel=1e-12)
-    assert abs(book["waiting"]) < 1e-3 * book["dissipated"]
-    assert book["worn_by"] == pytest.approx(book["shared"], rel=1e-9)
+    for body in ("tool", "rock"):
+        assert book[body] > 1
+        assert book[f"{body}_shared"] + book[f"{body}_waiting"] == pytest.approx(book[body], rel=1e-12)
+        assert 0 <= book[f"{body}_waiting"] < 0.03 * book[body]
+    assert book["worn_by"] == pytest.approx(book["tool_shared"], rel=1e-9)
 
 
 def test_mass_book_closes_to_round_off(cut):
@@ -84,12 +86,12 @@ def test_without_heat_there_is_no_heat_engine(tmp_path):
 
 def test_killed_and_stopped_and_resumed_equals_never_stopped(cut, tmp_path):
     out = tmp_path / "out"
-    options = dict(checkpoint_interval=0.3)
-    killed = interrupt(out, signal.SIGKILL, 3, **options)
+    options = dict(checkpoint_interval=0.01)
+    killed = interrupt(out, signal.SIGKILL, 2, **options)
     assert killed.code == -signal.SIGKILL and not (out / "summary.json").exists()
-    stopped = interrupt(out, signal.SIGTERM, 5, **options)
+    stopped = interrupt(out, signal.SIGTERM, 3, **options)
     assert stopped.code == 128 + signal.SIGTERM and "--resume" in stopped.stdout
-    stopped = interrupt(out, signal.SIGINT, 7, **options)
+    stopped = interrupt(out, signal.SIGINT, 5, **options)
     assert stopped.code == 128 + signal.SIGINT
     resumed = test_tooth(out, "--resume", **options)
     assert resumed.code == 0, resumed.stderr
@@ -153,8 +155,8 @@ def test_a_table_of_yade_batch_gives_a_folder_a_row(tmp_path):
     table.write_text(" ".join(["description", *values, "Rn", "out"]) + "\n"
                      + " ".join(["weak", *map(str, values.values()), "0.1e6", str(tmp_path / "sweep")]) + "\n"
                      + " ".join(["strong", *map(str, values.values()), "0.2e6", str(tmp_path / "sweep")]) + "\n")
-    import subprocess
-    done = subprocess.run(["yade-batch", "-j2", "--job-threads=1", str(table), str(ROOT / "yade_scripts/test_tooth.py")],
+    done = subprocess.run(["yade-batch", "-j2", "--job-threads=1", f"--log={tmp_path}/@.log", str(table),
+                           str(ROOT / "yade_scripts/test_tooth.py")],
                           cwd=tmp_path, capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=120)
     found = {name: json.loads((tmp_path / "sweep" / name / "summary.json").read_text())["parameters"]["Rn"]
              for name in ("weak", "strong")}

@@ -1,0 +1,71 @@
+"""What a run left in its folder, read back: summary, history, model and snapshots."""
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+
+
+class RunFolder:
+    """A run's folder. Only summary.json must be there; whatever else is missing reads as empty.
+
+    summary, parameters: as written; columns: {name: (rows,)} and units: {name: unit} of history.csv; model: {name:
+    array}; times, stages: of the snapshots, in order.
+    """
+
+    def __init__(self, path):
+        self.path = Path(path)
+        self.summary = json.loads((self.path / "summary.json").read_text())
+        self.parameters = self.summary.get("parameters", {})
+        self.columns, self.units = read_history(self.path / "history.csv")
+        self.model = read_arrays(self.path / "model.npz")
+        self._find_snapshots()
+
+    def _find_snapshots(self):
+        paths = sorted((self.path / "snapshots").glob("*.npz"))
+        found = [(path, *read_arrays(path, "time", "stage").values()) for path in paths]
+        # A run that ends with a stage is shown twice at the same time, after the stage and after the run.
+        new = [k for k in range(len(found)) if k == 0 or found[k][1] != found[k - 1][1]]
+        self._paths = [found[k][0] for k in new]
+        self.times = np.array([found[k][1] for k in new], float)
+        self.stages = np.array([found[k][2] for k in new], int)
+
+    def snapshot(self, index):
+        """{name: array} of one snapshot; -1 is the last."""
+        return read_arrays(self._paths[index])
+
+    def result(self, name):
+        """Value of a result in SI, nan where the run has none."""
+        value = self.summary.get("results", {}).get(name, {}).get("value")
+        return math.nan if value is None else value
+
+    def parameter(self, name, default):
+        """Value of a parameter."""
+        return self.parameters.get(name, default)
+
+    def column(self, name):
+        """A column of the history, empty where it was not recorded."""
+        return self.columns.get(name, np.empty(0))
+
+    def stage_ends(self):
+        """{stage: index of its last snapshot}, in order."""
+        return {int(stage): k for k, stage in enumerate(self.stages)}
+
+
+def read_arrays(path, *names):
+    """{name: array} of an npz file, all or those named; empty without the file."""
+    if not path.exists():
+        return {}
+    with np.load(path) as arrays:
+        return {name: arrays[name] for name in names or arrays.files}
+
+
+def read_history(path):
+    """({name: column}, {name: unit}) of a file with a header of `name [unit]`; lines that are cut short are left out."""
+    lines = path.read_text().splitlines() if path.exists() else []
+    header = [word.strip() for word in lines[0].split(",") if word.strip()] if lines else []
+    names = [word.split(" [")[0] for word in header]
+    units = [word.split(" [")[1].rstrip("]") if " [" in word else "-" for word in header]
+    rows = [line.split(",") for line in lines[1:]]
+    table = np.array([row for row in rows if len(row) == len(header)], float).reshape(-1, len(header))
+    return dict(zip(names, table.T)), dict(zip(names, units))

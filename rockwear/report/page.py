@@ -1,0 +1,156 @@
+"""Pieces of a self-contained page: quantities in an engineer's units, tables, tiles, sections."""
+import base64
+import html
+import math
+from dataclasses import dataclass, field
+
+SHOWN = {"N/m": ("kN/m", 1e-3, 0.0), "s": ("ms", 1e3, 0.0), "K": ("°C", 1.0, -273.15), "J/m3": ("MJ/m³", 1e-6, 0.0),
+         "m": ("mm", 1e3, 0.0), "m3": ("mm³", 1e9, 0.0), "m3/m": ("mm³/mm", 1e6, 0.0), "bytes": ("MB", 1e-6, 0.0),
+         "Pa": ("MPa", 1e-6, 0.0), "-": ("", 1.0, 0.0)}
+"""How a unit of the files is shown: unit, factor, and what is added after it."""
+
+LOOK = """
+body {font: 15px/1.45 system-ui, sans-serif; color: #222; max-width: 1100px; margin: 0 auto; padding: 1.5em; background: #fff}
+h1 {margin: 0} h2 {margin: 2em 0 .2em; border-bottom: 2px solid #c8a15a; padding-bottom: .15em}
+p {margin: .4em 0 .8em} .ended {color: #555; font-size: 1.1em}
+img {max-width: 100%; display: block; margin: .5em auto}
+.tiles {display: grid; grid-template-columns: repeat(auto-fill, minmax(165px, 1fr)); gap: 10px; margin: 1em 0}
+.tile {background: #f6f2ea; border-radius: 6px; padding: .5em .8em}
+.tile b {display: block; font-size: 1.35em; white-space: nowrap} .tile span {color: #555; font-size: .85em; display: block}
+table {border-collapse: collapse; margin: .6em 0} th {text-align: left; background: #f6f2ea}
+td, th {padding: .2em .9em .2em .5em; border-bottom: 1px solid #e4ddd0; vertical-align: top}
+td.number {text-align: right; font-variant-numeric: tabular-nums}
+.beside {display: flex; flex-wrap: wrap; gap: 0 3em} caption {text-align: left; font-weight: bold; padding: .3em 0}
+details {margin: 1em 0} summary {cursor: pointer; font-weight: bold}
+"""
+
+
+@dataclass
+class Section:
+    """A heading, a sentence on what to see, and pieces of html; an empty piece is left out, and so is an empty section."""
+
+    title: str
+    words: str
+    pieces: list = field(default_factory=list)
+
+    def html(self):
+        """As html."""
+        pieces = [piece for piece in self.pieces if piece]
+        if not pieces:
+            return ""
+        return f"<h2>{html.escape(self.title)}</h2>\n<p>{html.escape(self.words)}</p>\n" + "\n".join(pieces)
+
+
+def number(value):
+    """A number as an engineer would write it; text as it is."""
+    if isinstance(value, (bool, str, int)) or value is None:
+        return str(value)
+    if not math.isfinite(value):
+        return "not known" if math.isnan(value) else str(value)
+    return f"{value:.0f}" if abs(value) >= 1000 else f"{value:.3g}"
+
+
+def quantity(value, unit):
+    """Value and unit as shown: quantity(12e3, "N/m") is "12 kN/m"."""
+    if isinstance(value, str):
+        return value
+    shown, factor, added = SHOWN.get(unit, (unit, 1.0, 0.0))
+    if (factor, added) != (1.0, 0.0):
+        value = value * factor + added
+    return f"{number(value)} {shown if math.isfinite(value) else ''}".strip()
+
+
+def percent(part, whole):
+    """Part of a whole in per cent; not known without a whole."""
+    share = 100 * part / whole if whole else math.nan
+    return f"{share:.2g} %" if math.isfinite(share) else "not known"
+
+
+def duration(seconds):
+    """Wall time."""
+    if not seconds >= 60:
+        return f"{number(seconds)} s"
+    minutes, hours = int(seconds / 60) % 60, int(seconds / 3600)
+    return f"{hours} h {minutes} min" if hours else f"{minutes} min {int(seconds) % 60} s"
+
+
+def words(name):
+    """A name of the files in words."""
+    return name.replace("_", " ")
+
+
+def table(rows, header=(), caption=""):
+    """An html table; every cell but the first of a row is set as a number."""
+    parts = [f"<caption>{html.escape(caption)}</caption>"] if caption else []
+    if header:
+        parts.append("<tr>" + "".join(f"<th>{html.escape(str(cell))}</th>" for cell in header) + "</tr>")
+    for first, *others in rows:
+        cells = "".join(f'<td class="number">{html.escape(str(cell))}</td>' for cell in others)
+        parts.append(f"<tr><td>{html.escape(str(first))}</td>{cells}</tr>")
+    return "<table>" + "\n".join(parts) + "</table>"
+
+
+def tiles(entries):
+    """The numbers to see first: [(label, value, remark)]."""
+    return '<div class="tiles">' + "\n".join(
+        f'<div class="tile"><span>{html.escape(label)}</span><b>{html.escape(value)}</b><span>{html.escape(remark)}</span></div>'
+        for label, value, remark in entries) + "</div>"
+
+
+def image(path):
+    """A picture of the disk, inside the page."""
+    kind = path.suffix.lstrip(".")
+    data = base64.b64encode(path.read_bytes()).decode()
+    return f'<img src="data:image/{kind};base64,{data}" alt="{html.escape(words(path.stem))}">'
+
+
+def folded(title, *pieces):
+    """Pieces behind a title that opens them."""
+    return f"<details><summary>{html.escape(title)}</summary>\n" + "\n".join(pieces) + "</details>"
+
+
+def beside(*pieces):
+    """Pieces side by side as far as there is room."""
+    return '<div class="beside">' + "\n".join(f"<div>{piece}</div>" for piece in pieces if piece) + "</div>"
+
+
+def machine_tiles(run):
+    """What the run cost."""
+    wall = run.summary.get("wall_time", {})
+    loop, python = wall.get("loop", math.nan), wall.get("python_engines", math.nan)
+    memory = run.summary.get("peak_memory", {}).get("value", math.nan)
+    return [("wall time", duration(wall.get("total", math.nan)), f"Python engines {percent(python, loop)} of the loop"),
+            ("peak memory", quantity(memory, "bytes"), "")]
+
+
+def whole_results(run):
+    """Every result of summary.json, as shown and as written."""
+    rows = [(words(name), quantity(entry["value"], entry["unit"]), repr(entry["value"]), entry["unit"])
+            for name, entry in run.summary.get("results", {}).items()]
+    return Section("Everything else", "Values in SI are those of summary.json, to the last digit.",
+                   [folded("All results", table(rows, ("result", "", "SI", "")))])
+
+
+def parameters(run):
+    """Effective parameters, versions, and wall time by engine."""
+    wall = run.summary.get("wall_time", {})
+    loop = wall.get("loop", math.nan)
+    engines = [(words(name), f"{entry['seconds']:.2f}", percent(entry["seconds"], loop), entry["visits"])
+               for name, entry in wall.get("by_engine", {}).items()]
+    phases = [(words(name), f"{wall[name]:.2f}") for name in wall if name not in ("unit", "by_engine")]
+    versions = [(name, version) for name, version in run.summary.get("versions", {}).items()]
+    chosen = [(name, repr(value) if isinstance(value, float) else value) for name, value in run.parameters.items()]
+    return Section("How it was run", "Parameters in SI, defaults included.", [
+        folded("All parameters", table(chosen, ("parameter", "value"))),
+        folded("Versions and wall time", beside(
+            table(versions, ("program", "version")), table(phases, ("phase", "s")),
+            table(engines, ("engine", "s", "of the loop", "visits"))))])
+
+
+def page(run, sections):
+    """The whole page of a run."""
+    scene, ended = run.summary.get("scene", ""), run.summary.get("ended", "not known")
+    title = html.escape(words(scene))
+    body = "\n".join(section.html() for section in sections)
+    return (f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><title>{title}</title>\n<style>{LOOK}</style></head>\n'
+            f'<body><h1>{title}</h1>\n<p class="ended">{html.escape(ended)}</p>\n{body}\n</body></html>\n')

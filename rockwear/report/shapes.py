@@ -1,0 +1,120 @@
+"""Shapes in a run's arrays: the outline of what is left of the tool, its wear along the contour, chips, cracks."""
+import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import Delaunay, QhullError, cKDTree
+
+ALPHA = 2.2
+"""Gaps whose rim fits on a circle of this many mean radii are closed, as in kernels.surface."""
+
+
+def outlines(positions, radii, inset=None):
+    """Closed polygons (k, 2) around a body of discs, counter-clockwise, through the outermost points of its rim.
+
+    inset: (n,) m by which each disc has been worn from outside; the polygon stands that much further in.
+    """
+    reach = radii if inset is None else np.maximum(radii - inset, -radii)
+    return [positions[loop] + reach[loop, None] * _outward(positions[loop]) for loop in _rims(positions, radii)]
+
+
+def _rims(positions, radii):
+    """Lists of disc numbers around each part of the body, counter-clockwise; holes and single chains are left out."""
+    if len(positions) < 3:
+        return []
+    try:
+        triangles = Delaunay(positions).simplices
+    except QhullError:  # all in a line
+        return []
+    a, b, c = positions[triangles].transpose(1, 0, 2)
+    area = _cross(b - a, c - a) / 2
+    sides = np.linalg.norm(b - a, axis=1) * np.linalg.norm(c - b, axis=1) * np.linalg.norm(a - c, axis=1)
+    with np.errstate(divide="ignore"):
+        inside = sides / (4 * abs(area)) < ALPHA * radii[triangles].mean(axis=1)
+    triangles = np.where(area[:, None] > 0, triangles, triangles[:, ::-1])[inside]
+    edges = {(i, j) for t in triangles.tolist() for i, j in zip(t, t[1:] + t[:1])}
+    following = {}
+    for i, j in sorted(edges):
+        if (j, i) not in edges:
+            following.setdefault(i, []).append(j)
+    loops = []
+    while following:
+        loop = _follow(following)
+        x, y = positions[loop].T
+        if np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)) > 0:
+            loops.append(loop)
+    return loops
+
+
+def _follow(following):
+    """Take one closed loop of numbers out of {number: [next numbers]}."""
+    start = here = next(iter(following))
+    loop = []
+    while True:
+        loop.append(here)
+        onward = following[here].pop()
+        if not following[here]:
+            del following[here]
+        here = onward
+        if here == start:
+            return np.array(loop)
+
+
+def _outward(loop):
+    """Unit normals of a counter-clockwise polygon at its corners, those of the two sides between them."""
+    along = np.roll(loop, -1, axis=0) - loop
+    along /= np.linalg.norm(along, axis=1, keepdims=True)
+    normal = np.column_stack([along[:, 1], -along[:, 0]])
+    normal = normal + np.roll(normal, 1, axis=0)
+    return normal / np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-12)
+
+
+def _cross(a, b):
+    return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
+
+
+def contour(outline, spacing):
+    """Points along a polygon and their arc length (m) from its lowest point: positive up the front, at greater x."""
+    x, y = outline.T
+    if np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)) < 0:
+        outline = outline[::-1]
+    closed = np.roll(outline, -int(np.argmin(outline[:, 1])), axis=0)
+    closed = np.vstack([closed, closed[:1]])
+    way = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(closed, axis=0), axis=1))])
+    arc = np.arange(0, way[-1], spacing)
+    points = np.column_stack([np.interp(arc, way, closed[:, k]) for k in (0, 1)])
+    return points, np.where(arc > way[-1] / 2, arc - way[-1], arc)
+
+
+def wear_profile(outline, positions, volumes, bin_width):
+    """Mean worn depth along a contour: (arc lengths of the bins' edges, depth in each bin), m.
+
+    The worn volumes (n,) m3 per metre of the particles at `positions` go to the nearest place of the contour, so that
+    the area under the profile is the worn volume.
+    """
+    points, arc = contour(outline, bin_width / 10)
+    nearest = arc[cKDTree(points).query(positions)[1]]
+    edges = np.arange(np.floor(arc.min() / bin_width), np.ceil(arc.max() / bin_width) + 1) * bin_width
+    return edges, np.histogram(nearest, edges, weights=volumes)[0] / bin_width
+
+
+def chips(count, pairs, intact, held):
+    """(n,) bool: discs that no chain of intact bonds joins to a held one (to the largest part, if none is held)."""
+    i, j = pairs[intact].T
+    label = connected_components(coo_matrix((np.ones(len(i)), (i, j)), shape=(count, count)), directed=False)[1]
+    anchors = label[held] if np.any(held) else [np.argmax(np.bincount(label))]
+    return ~np.isin(label, anchors)
+
+
+def cracks(positions, radii, pairs, near=1.3):
+    """Segments (m, 2, 2), one a broken bond, across it and as long as its smaller disc: together they trace the crack.
+
+    Only bonds whose discs are still within `near` sums of their radii.
+    """
+    i, j = pairs.T
+    across = positions[j] - positions[i]
+    distance = np.linalg.norm(across, axis=1)
+    close = (distance > 0) & (distance < near * (radii[i] + radii[j]))
+    i, j, across = i[close], j[close], across[close] / distance[close, None]
+    middle = (positions[i] + positions[j]) / 2
+    half = np.minimum(radii[i], radii[j])[:, None] * np.column_stack([-across[:, 1], across[:, 0]])
+    return np.stack([middle - half, middle + half], axis=1)
