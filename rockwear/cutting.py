@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 from yade import InsertionSortCollider, O, utils
 
-from . import engines, scene
+from . import engines, scene, vtk
 from .engines.bonds import Bonds, RockFriction
 from .engines.heat import Heat
 from .engines.motion import BackgroundDamping, Foresight
@@ -445,6 +445,18 @@ class Cutting:
                 "broken_bonds": broken, "status": self.bonds.status, "temperature": temperature,
                 "tool_offset": self.bodies.offset, "alive": erosion.alive,
                 "worn_depth": erosion.stored / (2 * self.tool.radii), "skin": np.array(sorted(erosion.skin), int)}
+
+    def write_vtk(self, folder, number):
+        """rock.NNNN.vtk and tool.NNNN.vtk: diameter, broken bonds, temperature, worn depth."""
+        shot, rock, tool = self.snapshot(), self.rock, self.tool
+        alive = shot["alive"]
+        fields = {"diameter": 2 * rock.radii, "broken_bonds": shot["broken_bonds"]}
+        worn = {"diameter": 2 * tool.radii[alive], "worn_depth": shot["worn_depth"][alive]}
+        if self.heat:
+            fields["temperature"] = shot["temperature"][:rock.count]
+            worn["temperature"] = shot["temperature"][rock.count:][alive]
+        vtk.write(folder / f"rock.{number:04d}.vtk", shot["rock_positions"], fields)
+        vtk.write(folder / f"tool.{number:04d}.vtk", tool.positions[alive] + shot["tool_offset"], worn)
 
     def progress(self):
         """A few words on how it stands."""

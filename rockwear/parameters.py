@@ -94,10 +94,9 @@ def _arguments(arguments, known):
         name, equals, value = word[2:].partition("=")
         name = name.replace("-", "_")
         if not equals:
-            is_flag = name in known and known[name].rule is flag
-            if rest and not rest[0].startswith("--") and not (is_flag and rest[0].lower() not in ("true", "false", "0", "1", "yes", "no")):
+            if rest and not rest[0].startswith("--"):
                 value = rest.pop(0)
-            elif is_flag:
+            elif name in known and known[name].rule is flag:
                 value = "true"
             else:
                 raise ParameterError(name, "", "given a value")

@@ -23,9 +23,10 @@ COMMON = [
     Parameter("resume", False, "", flag, "go on from the checkpoint in the folder"),
     Parameter("checkpoint_interval", 60.0, "s", above_zero, "wall time between checkpoints"),
     Parameter("snapshot_period", 4e-4, "s", above_zero, "simulated time between the pictures of the report"),
+    Parameter("report", True, "", flag, "write report.html and its figures at the end"),
     Parameter("vtk", False, "", flag, "write each snapshot for ParaView too"),
 ]
-NOT_IDENTITY = {"out", "resume", "checkpoint_interval", "vtk"}
+NOT_IDENTITY = {"out", "resume", "checkpoint_interval", "report", "vtk"}
 
 
 def main(name, declared, make_scene):
@@ -140,9 +141,8 @@ class Run:
                 self._snapshot()
                 self._checkpoint()
             self._write_summary(ended)
-            if not code:
+            if not code and self.values["report"]:
                 report.write(self.folder)
-                self._write_summary(ended)
                 print(f"report: {self.folder / 'report.html'}")
         except OSError as error:
             print(f"error: {error}", file=sys.stderr)

@@ -163,6 +163,14 @@ def test_a_table_of_yade_batch_gives_a_folder_a_row(tmp_path):
     assert found == {"weak": 0.1e6, "strong": 0.2e6}, done.stdout + done.stderr
 
 
+def test_vtk_on_request(tmp_path):
+    run = test_tooth(tmp_path / "out", "--vtk", **TINY)
+    lines = sorted((run.out / "vtk").glob("tool.*.vtk"))[-1].read_text().splitlines()
+    count = int(lines[4].split()[1])
+    assert count == value(run, "tool_particles") and "SCALARS temperature double 1" in lines
+    assert len(lines) == 5 + count + 1 + count + 1 + 3 * (2 + count)
+
+
 def test_history_has_units_and_rises_in_time(cut):
     columns = history(cut.out)
     assert all("[" in name for name in columns)

@@ -1,0 +1,51 @@
+# rockwear: how a rock-cutting tool heats up, wears and changes its shape.
+PYTHON   := /usr/bin/python3
+PACKAGES := yade python3-numpy python3-scipy python3-matplotlib python3-pil python3-pytest python3-pyflakes
+OUT      := out
+SUDO     := $(if $(filter 0,$(shell id -u)),,sudo)
+TOOTH    := yade -n -x -j1 yade_scripts/test_tooth.py
+
+.DEFAULT_GOAL := help
+.PHONY: help setup run test validate bench campaigns lint clean
+
+help: ## list the targets
+	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "make %-10s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
+
+setup: ## install what is missing (Debian packages), check that YADE runs
+	@if command -v dpkg-query >/dev/null && command -v apt-get >/dev/null; then \
+	  missing=$$(for p in $(PACKAGES); do \
+	    dpkg-query -W -f='$${db:Status-Status}' $$p 2>/dev/null | grep -qx installed || echo $$p; done); \
+	  if [ -n "$$missing" ]; then \
+	    if [ -n "$(SUDO)" ] && ! command -v sudo >/dev/null; then \
+	      echo "setup: not root and no sudo; missing packages:" $$missing >&2; exit 1; fi; \
+	    $(SUDO) apt-get update -qq && \
+	    $(SUDO) env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $$missing >/dev/null \
+	      || { echo "setup: apt-get could not install:" $$missing >&2; exit 1; }; \
+	  fi; \
+	fi
+	@command -v yade >/dev/null || { echo "setup: YADE is missing, and there is no apt-get to install it (Debian package yade)" >&2; exit 1; }
+	@$(PYTHON) -c 'import numpy, scipy, matplotlib, PIL, pytest' 2>/dev/null || { \
+	  echo "setup: $(PYTHON) lacks one of numpy, scipy, matplotlib, PIL, pytest (Debian packages python3-...)" >&2; exit 1; }
+	@yade --version >/dev/null 2>&1 || { echo "setup: YADE is installed but does not start (try: yade --version)" >&2; exit 1; }
+
+run: setup ## the main job: the test tooth of M 9.2; report in out/test_tooth/report.html
+	$(TOOTH) --out $(OUT)/test_tooth
+
+test: setup ## all tests
+	$(PYTHON) -m pytest tests
+
+validate: setup ## long validations
+	$(PYTHON) -m calibration.validate $(OUT)/validate
+
+bench: setup ## speed against error; figures and numbers in out/bench
+	$(PYTHON) -m calibration.bench $(OUT)/bench
+
+campaigns: setup ## a sweep of the test tooth over seeds, two jobs at a time
+	mkdir -p $(OUT)/campaign
+	yade-batch -j2 --job-threads=1 --log=$(OUT)/campaign/@.log yade_scripts/test_tooth.seeds.table yade_scripts/test_tooth.py
+
+lint: setup ## unused names and the like
+	$(PYTHON) -m pyflakes rockwear calibration yade_scripts tests
+
+clean: ## remove results
+	rm -rf $(OUT)

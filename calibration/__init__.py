@@ -1,0 +1,1 @@
+"""The virtual laboratory and the measurements behind defaults."""

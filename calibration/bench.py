@@ -1,0 +1,138 @@
+"""Speed against error of the main scene: what each knob costs, what it is off by, and why the defaults are what they are.
+
+    python3 -m calibration.bench DIR        (make bench)
+
+Three knobs of yade_scripts/test_tooth.py, each against its finest setting on otherwise the same run, two runs at a time;
+the cost of all our engines together comes from calibration/overhead.py. Sampling and heat do not act back on the motion
+while no particle is removed (acceleration 100 here), so their runs follow one trajectory and differ by the knob alone.
+A change of the time step changes which bond breaks first, and then everything: its error is shown on rock that cannot
+break, beside the scatter of the breaking rock over seeds.
+"""
+import json
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from statistics import mean, stdev
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402
+import numpy as np  # noqa: E402
+
+ROOT = Path(__file__).resolve().parents[1]
+SAME_PATH = {"acceleration": 100, "start_up": 0.002, "cycles": 0, "snapshot_period": 1}
+UNBREAKABLE = {**SAME_PATH, "start_up": 2e-4, "Rn": 1e12, "Rt": 1e12, "approach": 1e-4}
+BREAKING = {**SAME_PATH, "acceleration": 7000, "heat": "false"}
+SAMPLING, DEFAULT_SAMPLING = [1, 2, 5, 10, 20, 50, 100], 1
+HEAT, DEFAULT_HEAT = [2e-6, 1e-5, 5e-5, 1e-4, 2e-4, 5e-4, 1e-3], 1e-4
+FRACTION, DEFAULT_FRACTION = [0.1, 0.2, 0.4, 0.6, 0.8, 0.9], 0.8
+SEEDS = [1, 2, 3, 4]
+
+
+def run(folder, values):
+    """One run of the main scene in its own process. -> summary with the worn depth by tool particle."""
+    words = [word for name, value in values.items() for word in (f"--{name}", str(value))]
+    done = subprocess.run(["yade", "-n", "-x", "-j1", str(ROOT / "yade_scripts/test_tooth.py"), "--out", str(folder),
+                           "--report", "false", *words], capture_output=True, text=True, stdin=subprocess.DEVNULL)
+    if done.returncode:
+        sys.exit(f"bench: {folder.name} ended with {done.returncode}: {done.stderr.splitlines()[-1]}")
+    summary = json.loads((folder / "summary.json").read_text())
+    last = sorted((folder / "snapshots").glob("*.npz"))[-1]
+    summary["worn_depth"] = np.load(last)["worn_depth"]
+    return summary
+
+
+def run_all(folder, jobs):
+    """{name: summary} of the jobs {name: values}, two at a time."""
+    with ThreadPoolExecutor(2) as pool:
+        return dict(zip(jobs, pool.map(lambda job: run(folder / job[0], job[1]), jobs.items())))
+
+
+def value(summary, name):
+    """A result of a run."""
+    return summary["results"][name]["value"]
+
+
+def warming(summary):
+    """Rise of the hottest tool particle, K."""
+    return value(summary, "tool_temperature_max") - summary["parameters"]["tool_temperature"]
+
+
+def cost(summary):
+    """Wall time of our engines over that of YADE."""
+    wall = summary["wall_time"]
+    return wall["python_engines"] / wall["yade"]
+
+
+def rows_against_finest(runs, knob):
+    """[{knob, cost, errors}] of runs in rising order of coarseness, the first being the reference."""
+    reference = next(iter(runs.values()))
+    rows = []
+    for summary in runs.values():
+        depth, exact = summary["worn_depth"], reference["worn_depth"]
+        rows.append({
+            knob: summary["parameters"][knob], "cost": cost(summary), "loop_seconds": summary["wall_time"]["loop"],
+            "wear": abs(value(summary, "worn_volume") / value(reference, "worn_volume") - 1),
+            "distribution": float(np.abs(depth - exact).sum() / exact.sum()),
+            "tip temperature": abs(warming(summary) / warming(reference) - 1) if warming(reference) > 0 else 0.0,
+            "energy audit": abs(summary["audits"]["energy"]["residual"] / summary["audits"]["energy"]["tool_work"])})
+    return rows
+
+
+def draw(axes, rows, knob, default, names, unit, right="cost", right_label="our engines / YADE"):
+    """Errors over the knob, the cost on the other axis, the default marked."""
+    x = [row[knob] for row in rows]
+    for name in names:
+        axes.loglog(x, np.maximum([row[name] for row in rows], 1e-6), "o-", label=name)
+    axes.axhline(0.01, color="0.6", lw=0.8, ls="--")
+    axes.axvline(default, color="k", lw=0.8, ls=":")
+    axes.text(default, axes.get_ylim()[0], " default", rotation=90, va="bottom", fontsize=8)
+    axes.set_xlabel(f"{knob.replace('_', ' ')} [{unit}]")
+    axes.set_ylabel("error, relative")
+    other = axes.twinx()
+    other.plot(x, [row[right] for row in rows], "s--", color="tab:red", ms=4)
+    other.set_ylabel(right_label, color="tab:red")
+    other.set_ylim(bottom=0)
+    axes.legend(fontsize=8, loc="best")
+
+
+def main(folder):
+    """All curves, the figure and the numbers."""
+    folder.mkdir(parents=True, exist_ok=True)
+    jobs = {f"sampling-{n}": {**SAME_PATH, "sampling_period": n} for n in SAMPLING}
+    jobs.update({f"heat-{p:g}": {**SAME_PATH, "heat_period": p} for p in HEAT})
+    jobs.update({f"step-{f:g}": {**UNBREAKABLE, "time_step_fraction": f} for f in FRACTION})
+    jobs.update({f"seed-{s}-{f:g}": {**BREAKING, "seed": s, "time_step_fraction": f} for s in SEEDS for f in (0.2, DEFAULT_FRACTION)})
+    runs = run_all(folder / "runs", jobs)
+
+    def group(prefix):
+        return {name: summary for name, summary in runs.items() if name.startswith(prefix)}
+
+    sampling, heat = rows_against_finest(group("sampling-"), "sampling_period"), rows_against_finest(group("heat-"), "heat_period")
+    step = rows_against_finest(group("step-"), "time_step_fraction")
+    exact = value(runs["step-0.1"], "mean_cutting_force")
+    for row, summary in zip(step, group("step-").values()):
+        row["cutting force"] = abs(value(summary, "mean_cutting_force") / exact - 1)
+    forces = {f"{f:g}": [value(runs[f"seed-{s}-{f:g}"], "mean_cutting_force") for s in SEEDS] for f in (0.2, DEFAULT_FRACTION)}
+    subprocess.run(["yade", "-n", "-x", "-j1", str(ROOT / "calibration/overhead.py"), "--out", str(folder)], check=True,
+                   capture_output=True, stdin=subprocess.DEVNULL)
+    overhead = json.loads((folder / "overhead.json").read_text())
+
+    figure, axes = plt.subplots(1, 3, figsize=(15, 4.2), constrained_layout=True)
+    draw(axes[0], sampling, "sampling_period", DEFAULT_SAMPLING, ["wear", "distribution", "tip temperature", "energy audit"], "steps")
+    draw(axes[1], heat, "heat_period", DEFAULT_HEAT, ["wear", "tip temperature"], "s")
+    draw(axes[2], step, "time_step_fraction", DEFAULT_FRACTION, ["cutting force", "wear", "tip temperature", "energy audit"],
+         "of the critical step", "loop_seconds", "wall time of the run, s")
+    figure.suptitle(f"Test tooth: error against cost. All our engines at the defaults: {100 * overhead['overhead']:.1f} % "
+                    f"of YADE's step of {1e3 * overhead['median']['dead']:.2f} ms")
+    figure.savefig(folder / "speed_against_error.png", dpi=110)
+    result = {"sampling": sampling, "heat": heat, "step": step, "overhead": overhead,
+              "mean_cutting_force_over_seeds": {name: {"mean": mean(f), "scatter": stdev(f)} for name, f in forces.items()}}
+    (folder / "bench.json").write_text(json.dumps(result, indent=1))
+    print(json.dumps({**result, "overhead": overhead["overhead"]}, indent=1))
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1] if len(sys.argv) > 1 else "out/bench"))

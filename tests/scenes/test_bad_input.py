@@ -1,0 +1,97 @@
+"""Bad input ends before the first step: one line that names parameter, value, rule and unit, exit code 2, nothing written."""
+import os
+
+import pytest
+
+from .conftest import ROOT, SMALL, arguments, run_script
+
+SCRIPT = ROOT / "yade_scripts/test_tooth.py"
+
+CASES = [
+    ({"kn": -20e9}, "kn = -2e+10 N/m: must be greater than 0"),
+    ({"kt": 0}, "kt = 0 N/m: must be greater than 0"),
+    ({"tool_kn": -1}, "tool_kn = -1 N/m: must be greater than 0"),
+    ({"Rn": "nan"}, "Rn = nan N: must be finite"),
+    ({"Rt": "inf"}, "Rt = inf N: must be finite"),
+    ({"mu": -0.1}, "mu = -0.1: must be at least 0"),
+    ({"tool_mu": 0}, "tool_mu = 0: must be greater than 0"),
+    ({"rock_density": 0}, "rock_density = 0 kg/m3: must be greater than 0"),
+    ({"radius_min": "small"}, "radius_min = small m: must be a number"),
+    ({"radius_min": 3e-3}, "radius_max = 0.0022 m: must be at least radius_min"),
+    ({"porosity": 0.5}, "porosity = 0.5"),
+    ({"porosity": -0.1}, "porosity = -0.1"),
+    ({"porosity": 0.001}, "porosity = 0.001"),
+    ({"width": 0.008}, "must be at most the specimen's width 0.008"),
+    ({"bonding_gap": -1e-4}, "bonding_gap = -0.0001 m: must be at least 0"),
+    ({"coarsening": 0.5}, "coarsening = 0.5: must be at least 1"),
+    ({"seed": 1.5}, "seed = 1.5: must be a whole number"),
+    ({"cycles": -1}, "cycles = -1: must be a whole number of at least 0"),
+    ({"velocity": 0}, "velocity = 0 m/s: must be greater than 0"),
+    ({"start_up": -1}, "start_up = -1 s: must be greater than 0"),
+    ({"cycle_time": 1.0}, "cycle_time = 1 s: must be so short"),
+    ({"depth_of_cut": 0.05}, "depth_of_cut = 0.05 m: must be more than a rock particle"),
+    ({"depth_of_cut": 1e-3}, "depth_of_cut = 0.001 m: must be more than a rock particle"),
+    ({"tooth_width": 0.08}, "tooth_width = 0.08"),
+    ({"tooth_height": 0.05}, "tooth_height = 0.05"),
+    ({"rake": 79, "clearance": 20}, "rake = "),
+    ({"tip_radius": 0.05}, "tip_radius = 0.05 m: must be"),
+    ({"tool_radius_min": 0.6e-3}, "tool_radius_max = 0.00052 m: must be at least tool_radius_min"),
+    ({"tool_radius_max": 2e-3}, "tool_radius_max = 0.002 m: must be at most the rock's radius_min"),
+    ({"outline": "nowhere.csv"}, "outline = nowhere.csv: must be a readable CSV file"),
+    ({"steel": "butter"}, "steel = butter: must be one of MET71, MET91"),
+    ({"removal": "magic"}, "removal = magic: must be one of volume, depth"),
+    ({"wear_coefficient": -1}, "wear_coefficient = -1: must be at least 0"),
+    ({"contact_damping": 2}, "contact_damping = 2: must be at most 1"),
+    ({"heat_fraction": 1.5}, "heat_fraction = 1.5: must be at most 1"),
+    ({"tool_temperature": 1500}, "tool_temperature = 1500 K: must be inside the hardness table of MET91, 273.15 to 873.15"),
+    ({"ambient_temperature": 20}, "ambient_temperature = 20 K: must be inside the hardness table"),
+    ({"time_step": 1e-5}, "time_step = 1e-05 s: must be at most the stable step"),
+    ({"time_step_fraction": 1.5}, "time_step_fraction = 1.5: must be at most 1"),
+    ({"sampling_period": 0}, "sampling_period = 0 steps: must be a whole number of at least 1"),
+    ({"heat_period": 0}, "heat_period = 0 s: must be greater than 0"),
+    ({"heat": "maybe"}, "heat = maybe: must be true or false"),
+    ({"checkpoint_interval": 0}, "checkpoint_interval = 0 s: must be greater than 0"),
+    ({"velocty": 4}, "velocty = 4: must be a parameter of this scene; did you mean velocity"),
+    ({"out": "/proc/nowhere"}, "out = /proc/nowhere: must be a folder that can be written"),
+    ({"resume": "true"}, "must be an existing checkpoint: there is none to resume from"),
+]
+
+
+def one_line(run, words):
+    errors = [line for line in run.stderr.splitlines() if line.startswith("error: ")]
+    assert run.code == 2, run.stderr
+    assert len(errors) == 1 and words in errors[0], run.stderr
+    assert "Traceback" not in run.stdout + run.stderr
+
+
+@pytest.mark.parametrize("values, words", CASES, ids=[" ".join(f"{k}={v}" for k, v in values.items()) for values, _ in CASES])
+def test_bad_value(values, words, tmp_path):
+    run = run_script(SCRIPT, *arguments({**SMALL, "out": tmp_path / "out", **values}), cwd=tmp_path)
+    one_line(run, words)
+    assert os.listdir(tmp_path) == []
+
+
+@pytest.mark.parametrize("words, expected", [
+    (["--kn"], "kn = : must be given a value"), (["kn", "3"], "argument = kn: must be of the form --name value"),
+    (["--kn", "--kt", "3"], "kn = : must be given a value")])
+def test_bad_command_line(words, expected, tmp_path):
+    run = run_script(SCRIPT, *words, cwd=tmp_path)
+    one_line(run, expected)
+    assert os.listdir(tmp_path) == []
+
+
+@pytest.mark.parametrize("rows, expected", [
+    ("0,0\n1,0\n", "outline"), ("0,0\n0.02,0.02\n0.02,0\n0,0.02\n", "outline"), ("x,y\n0,0\n1,a\n0,1\n", "outline")])
+def test_bad_outline(rows, expected, tmp_path):
+    file = tmp_path / "tooth.csv"
+    file.write_text(rows)
+    run = run_script(SCRIPT, *arguments({**SMALL, "out": tmp_path / "out", "outline": file}))
+    one_line(run, expected)
+    assert os.listdir(tmp_path) == ["tooth.csv"]
+
+
+def test_help_lists_every_parameter_with_its_source():
+    run = run_script(SCRIPT, "--help")
+    assert run.code == 0
+    for words in ("--kn 20000000000.0 [N/m]", "--acceleration 7000.0", "(M 9.2)", "--out"):
+        assert words in run.stdout
