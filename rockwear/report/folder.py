@@ -44,8 +44,13 @@ class RunFolder:
         return self.parameters.get(name, default)
 
     def column(self, name):
-        """A column of the history, empty where it was not recorded."""
-        return self.columns.get(name, np.empty(0))
+        """A column of the history, nan where it was not recorded."""
+        return self.columns.get(name, np.full(self.rows, np.nan))
+
+    @property
+    def rows(self):
+        """Rows of the history."""
+        return len(next(iter(self.columns.values()), ()))
 
     def stage_ends(self):
         """{stage: index of its last snapshot}, in order."""
@@ -61,7 +66,7 @@ def read_arrays(path, *names):
 
 
 def read_history(path):
-    """({name: column}, {name: unit}) of a file with a header of `name [unit]`; lines that are cut short are left out."""
+    """({name: column}, {name: unit}) of a file with a header of `name [unit]`; lines cut short are left out."""
     lines = path.read_text().splitlines() if path.exists() else []
     header = [word.strip() for word in lines[0].split(",") if word.strip()] if lines else []
     names = [word.split(" [")[0] for word in header]

@@ -5,18 +5,21 @@ import math
 from dataclasses import dataclass, field
 
 SHOWN = {"N/m": ("kN/m", 1e-3, 0.0), "s": ("ms", 1e3, 0.0), "K": ("°C", 1.0, -273.15), "J/m3": ("MJ/m³", 1e-6, 0.0),
-         "m": ("mm", 1e3, 0.0), "m3": ("mm³", 1e9, 0.0), "m3/m": ("mm³/mm", 1e6, 0.0), "bytes": ("MB", 1e-6, 0.0),
+         "m": ("mm", 1e3, 0.0), "m3": ("mm³/mm", 1e6, 0.0), "m3/m": ("mm³/mm", 1e6, 0.0), "bytes": ("MB", 1e-6, 0.0),
          "Pa": ("MPa", 1e-6, 0.0), "-": ("", 1.0, 0.0)}
 """How a unit of the files is shown: unit, factor, and what is added after it."""
 
 LOOK = """
-body {font: 15px/1.45 system-ui, sans-serif; color: #222; max-width: 1100px; margin: 0 auto; padding: 1.5em; background: #fff}
+body {font: 15px/1.45 system-ui, sans-serif; color: #222; background: #fff}
+body {max-width: 1100px; margin: 0 auto; padding: 1.5em}
 h1 {margin: 0} h2 {margin: 2em 0 .2em; border-bottom: 2px solid #c8a15a; padding-bottom: .15em}
 p {margin: .4em 0 .8em} .ended {color: #555; font-size: 1.1em}
 img {max-width: 100%; display: block; margin: .5em auto}
-.tiles {display: grid; grid-template-columns: repeat(auto-fill, minmax(165px, 1fr)); gap: 10px; margin: 1em 0}
+.tiles {display: grid; grid-template-columns: repeat(5, 1fr); gap: 10px; margin: 1em 0}
+@media (max-width: 800px) {.tiles {grid-template-columns: repeat(2, 1fr)}}
 .tile {background: #f6f2ea; border-radius: 6px; padding: .5em .8em}
-.tile b {display: block; font-size: 1.35em; white-space: nowrap} .tile span {color: #555; font-size: .85em; display: block}
+.tile b {display: block; font-size: 1.35em; white-space: nowrap}
+.tile span {color: #555; font-size: .85em; display: block}
 table {border-collapse: collapse; margin: .6em 0} th {text-align: left; background: #f6f2ea}
 td, th {padding: .2em .9em .2em .5em; border-bottom: 1px solid #e4ddd0; vertical-align: top}
 td.number {text-align: right; font-variant-numeric: tabular-nums}
@@ -27,7 +30,7 @@ details {margin: 1em 0} summary {cursor: pointer; font-weight: bold}
 
 @dataclass
 class Section:
-    """A heading, a sentence on what to see, and pieces of html; an empty piece is left out, and so is an empty section."""
+    """A heading, a sentence on what to see, and pieces of html; what is empty is left out."""
 
     title: str
     words: str
@@ -63,7 +66,9 @@ def quantity(value, unit):
 def percent(part, whole):
     """Part of a whole in per cent; not known without a whole."""
     share = 100 * part / whole if whole else math.nan
-    return f"{share:.2g} %" if math.isfinite(share) else "not known"
+    if not math.isfinite(share):
+        return "not known"
+    return f"{share:.1f} %" if abs(share) >= 1 else f"{share:.2g} %"
 
 
 def duration(seconds):
@@ -92,9 +97,10 @@ def table(rows, header=(), caption=""):
 
 def tiles(entries):
     """The numbers to see first: [(label, value, remark)]."""
+    cells = [[html.escape(word) for word in entry] for entry in entries]
     return '<div class="tiles">' + "\n".join(
-        f'<div class="tile"><span>{html.escape(label)}</span><b>{html.escape(value)}</b><span>{html.escape(remark)}</span></div>'
-        for label, value, remark in entries) + "</div>"
+        f'<div class="tile"><span>{label}</span><b>{value}</b><span>{remark}</span></div>'
+        for label, value, remark in cells) + "</div>"
 
 
 def image(path):
@@ -152,5 +158,6 @@ def page(run, sections):
     scene, ended = run.summary.get("scene", ""), run.summary.get("ended", "not known")
     title = html.escape(words(scene))
     body = "\n".join(section.html() for section in sections)
-    return (f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><title>{title}</title>\n<style>{LOOK}</style></head>\n'
-            f'<body><h1>{title}</h1>\n<p class="ended">{html.escape(ended)}</p>\n{body}\n</body></html>\n')
+    head = f'<head><meta charset="utf-8"><title>{title}</title>\n<style>{LOOK}</style></head>'
+    return (f'<!DOCTYPE html>\n<html lang="en">{head}\n<body><h1>{title}</h1>\n'
+            f'<p class="ended">{html.escape(ended)}</p>\n{body}\n</body></html>\n')

@@ -82,19 +82,16 @@ def contour(outline, spacing):
     way = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(closed, axis=0), axis=1))])
     arc = np.arange(0, way[-1], spacing)
     points = np.column_stack([np.interp(arc, way, closed[:, k]) for k in (0, 1)])
-    return points, np.where(arc > way[-1] / 2, arc - way[-1], arc)
+    arc = np.where(arc > way[-1] / 2, arc - way[-1], arc)
+    order = np.argsort(arc)
+    return points[order], arc[order]
 
 
-def wear_profile(outline, positions, volumes, bin_width):
-    """Mean worn depth along a contour: (arc lengths of the bins' edges, depth in each bin), m.
-
-    The worn volumes (n,) m3 per metre of the particles at `positions` go to the nearest place of the contour, so that
-    the area under the profile is the worn volume.
-    """
-    points, arc = contour(outline, bin_width / 10)
-    nearest = arc[cKDTree(points).query(positions)[1]]
-    edges = np.arange(np.floor(arc.min() / bin_width), np.ceil(arc.max() / bin_width) + 1) * bin_width
-    return edges, np.histogram(nearest, edges, weights=volumes)[0] / bin_width
+def distance_to(points, polygons, spacing):
+    """(n,) m from each point to the nearest side of the polygons, to within `spacing`; nan without any."""
+    if not polygons:
+        return np.full(len(points), np.nan)
+    return cKDTree(np.vstack([contour(polygon, spacing)[0] for polygon in polygons])).query(points)[0]
 
 
 def chips(count, pairs, intact, held):

@@ -1,0 +1,28 @@
+"""The page that shows a run: report.write(folder) reads the run's folder and draws figures/ and report.html.
+
+    python3 -m rockwear.report FOLDER
+
+Needs numpy, scipy and matplotlib, no YADE, so that a run can be looked at anywhere.
+"""
+import matplotlib
+
+from . import cutting, plots
+from .folder import RunFolder
+from .page import Section, page, parameters, whole_results
+
+
+def write(folder):
+    """Draw figures/* and report.html of the run in `folder` from what is there already. -> path of the page."""
+    run = RunFolder(folder)
+    with matplotlib.rc_context(plots.STYLE):
+        sections = cutting.sections(run) if cutting.shows(run) else general(run)
+        text = page(run, sections + [whole_results(run), parameters(run)])
+    path = run.path / "report.html"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def general(run):
+    """Sections of a scene without a page of its own: its history and its books."""
+    return [Section("History", "Every recorded quantity over time.", [plots.save(run, "history", plots.history(run))]),
+            plots.books(run)]
