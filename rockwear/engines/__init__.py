@@ -12,6 +12,11 @@ failures = []
 """What engines raised inside YADE's loop, which would otherwise lose it."""
 
 
+SLIDING = 1 - 1e-9
+"""|Ft| / mu |Fn| from which a contact slid in this step: YADE's laws return it to Coulomb's limit to round-off. (A looser
+test takes contacts that only tremble near the limit for sliding, and their work piles up.)"""
+
+
 class Engine:
     """One visit in `act`; `state`/`restore` carry what must survive a restart; `log` names what a recorder may write."""
 

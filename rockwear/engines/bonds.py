@@ -6,7 +6,7 @@ import numpy as np
 from yade import (FrictPhys, Law2_ScGeom_FrictPhys_CundallStrack,
                   Law2_ScGeom_JCFpmPhys_JointedCohesiveFrictionalPM, O)
 
-from . import Engine, contact_energy, law_functor
+from . import SLIDING, Engine, contact_energy, law_functor
 
 INTACT, BROKEN, GONE = 0, 1, 2
 """Status of a bond: GONE is broken, long apart and let go; a later meeting is a new contact."""
@@ -171,7 +171,7 @@ class RockFriction(Engine):
             if normal > 0:
                 force = phys.shearForce
                 tangential = force.norm()
-                if tangential > 0.999 * self.bonds.mu * normal:
+                if tangential > SLIDING * self.bonds.mu * normal:
                     self._book(interaction, self._slip_power(interaction, force, tangential) * elapsed)
         self._share_exact_work()
 
@@ -187,7 +187,7 @@ class RockFriction(Engine):
         if total <= 0:
             return
         sliding = [(i, i.phys.shearForce.norm() * i.geom.shearInc.norm()) for i in self.contacts
-                   if i.isReal and i.phys.shearForce.norm() > 0.999 * i.phys.tangensOfFrictionAngle * i.phys.normalForce.norm()]
+                   if i.isReal and i.phys.shearForce.norm() > SLIDING * i.phys.tangensOfFrictionAngle * i.phys.normalForce.norm()]
         weight = math.fsum(w for _, w in sliding)
         if weight > 0:
             for interaction, w in sliding:

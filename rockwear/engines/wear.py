@@ -5,7 +5,7 @@ import numpy as np
 from yade import InsertionSortCollider, Law2_ScGeom_FrictViscoPhys_CundallStrackVisco, O
 
 from ..kernels.archard import worn_volume
-from . import Engine, contact_energy, law_functor, yade_engine
+from . import SLIDING, Engine, contact_energy, law_functor, yade_engine
 
 
 class ToolContact(Engine):
@@ -72,7 +72,7 @@ class ToolContact(Engine):
             gain = dashpot.dot(self.motion.of(rock)) * (0.5 if tool_first else -0.5)
             self.dashpot_dissipated += (dashpot.squaredNorm() / phys.cn + gain) * elapsed
         tangential = shear.norm()
-        if tangential > 0 and tangential >= 0.999 * phys.tangensOfFrictionAngle * normal.norm():
+        if tangential > 0 and tangential >= SLIDING * phys.tangensOfFrictionAngle * normal.norm():
             sliding.append((index, rock, tangential * interaction.geom.shearInc.norm()))
 
     def _share(self, sliding):
