@@ -8,7 +8,7 @@ import matplotlib
 
 from . import cutting, plots
 from .folder import RunFolder
-from .page import Section, page, parameters, whole_results
+from .page import Section, parameters, whole_page, whole_results
 
 
 def write(folder):
@@ -16,7 +16,7 @@ def write(folder):
     run = RunFolder(folder)
     with matplotlib.rc_context(plots.STYLE):
         sections = cutting.sections(run) if cutting.shows(run) else general(run)
-        text = page(run, sections + [whole_results(run), parameters(run)])
+        text = whole_page(run, sections + [whole_results(run), parameters(run)])
     path = run.path / "report.html"
     path.write_text(text, encoding="utf-8")
     return path

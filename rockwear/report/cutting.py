@@ -77,7 +77,7 @@ def key_results(run):
         tile("worn volume", "worn_volume", "m3/m", "by Archard's law"),
         *[tile(f"hottest {body}", f"{body}_temperature_max", "K") for body in ("tool", "rock")
           if math.isfinite(run.result(f"{body}_temperature_max"))],
-        ("cracks", f"{run.result('tensile_cracks')} + {run.result('shear_cracks')}", "tensile + shear"),
+        ("cracks", f"{run.result('tensile_cracks')} + {run.result('shear_cracks')}", "tensile + shear, in the rock as it is now"),
         ("particles", f"{run.result('rock_particles')} + {run.result('tool_particles')}", "rock + tool"),
         ("time step", f"{number(1e9 * step)} ns", f"{percent(step, critical)} of the critical"),
         ("energy residual", percent(energy.get("residual", math.nan), energy.get("tool_work", 0.0)),
@@ -312,7 +312,7 @@ def paint_temperature(axes, run, shot, cold, norm):
 def wear_limits(run, shot, margin=2.0):
     """Limits in mm, in the tool's own frame, around what is gone or clearly worn; around the tip if nothing is."""
     model, depth = run.model, shot["worn_depth"]
-    worn = MM * model["tool_positions"][~shot["alive"] | (depth > 0.2 * model["tool_radii"].max())]
+    worn = MM * model["tool_positions"][~shot["alive"] | (depth > 0.5 * model["tool_radii"].max())]
     tip = MM * model["outline"][np.argmin(model["outline"][:, 1])]
     points = np.vstack([worn, tip - 3, tip + 3])
     (left, bottom), (right, top) = points.min(axis=0) - margin, points.max(axis=0) + margin
@@ -354,9 +354,9 @@ def shape(run):
         depth = np.maximum(shapes.distance_to(points, loops, SPACING) - rough, 0)
         profile.plot(MM * arc, MM * depth, color=colour, linewidth=1.4, label=f"after {stage_name(stage_of(run, k))}")
         deepest = np.fmax(deepest, depth)
-    worn = MM * arc[deepest > 0.02 * deepest.max()]
-    profile.set(xlim=(min(-5, *worn) - 2, max(5, *worn) + 2), ylim=(0, None), xlabel="arc length from the tip / mm",
-                ylabel="mm", title="worn depth along the new contour")
+    worn = np.append(MM * arc[deepest > 0.02 * deepest.max()], [-5, 5])
+    profile.set(xlim=(worn.min() - 2, worn.max() + 2), ylim=(0, max(0.1, 1.1 * MM * deepest.max())),
+                xlabel="arc length from the tip / mm", ylabel="mm", title="worn depth along the new contour")
     frame(axes, wear_limits(run, shot), "outline")
     profile.legend(loc="upper left")
     return figure
@@ -383,7 +383,7 @@ def draw_forces(run, axes, time):
     window = max(1, len(time) // 40)
     low, high, peak = 0.0, 0.0, 0.0
     for name, colour in (("cutting_force", "#b5651d"), ("thrust_force", "#2c6e91")):
-        force = 1e-3 * np.nan_to_num(run.column(name))
+        force = 1e-3 * np.nan_to_num(run.column(name), posinf=0.0, neginf=0.0)
         smooth = running_mean(force, window)
         axes.plot(time, force, color=colour, linewidth=0.6, alpha=0.4)
         axes.plot(time, smooth, color=colour, linewidth=2, label=words(name))

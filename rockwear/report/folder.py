@@ -71,6 +71,6 @@ def read_history(path):
     header = [word.strip() for word in lines[0].split(",") if word.strip()] if lines else []
     names = [word.split(" [")[0] for word in header]
     units = [word.split(" [")[1].rstrip("]") if " [" in word else "-" for word in header]
-    rows = [line.split(",") for line in lines[1:]]
-    table = np.array([row for row in rows if len(row) == len(header)], float).reshape(-1, len(header))
+    rows = [row for row in (line.split(",") for line in lines[1:]) if len(row) == len(header)]
+    table = np.array(rows, float).reshape(len(rows), len(header))
     return dict(zip(names, table.T)), dict(zip(names, units))

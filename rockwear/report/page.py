@@ -153,7 +153,7 @@ def parameters(run):
             table(engines, ("engine", "s", "of the loop", "visits"))))])
 
 
-def page(run, sections):
+def whole_page(run, sections):
     """The whole page of a run."""
     scene, ended = run.summary.get("scene", ""), run.summary.get("ended", "not known")
     title = html.escape(words(scene))

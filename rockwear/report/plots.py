@@ -29,7 +29,7 @@ def canvas(width, height, rows=1, columns=1, **options):
 def discs(axes, positions, radii, **style):
     """Discs at (n, 2) m in axes of mm. -> the collection."""
     collection = EllipseCollection(2 * MM * radii, 2 * MM * radii, np.zeros(len(radii)), units="xy",
-                                   offsets=MM * positions, transOffset=axes.transData, **style)
+                                   offsets=MM * positions, offset_transform=axes.transData, **style)
     axes.add_collection(collection)
     return collection
 

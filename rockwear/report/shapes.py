@@ -13,7 +13,7 @@ def outlines(positions, radii, inset=None):
 
     inset: (n,) m by which each disc has been worn from outside; the polygon stands that much further in.
     """
-    reach = radii if inset is None else np.maximum(radii - inset, -radii)
+    reach = radii if inset is None else np.maximum(radii - np.nan_to_num(inset), -radii)
     return [positions[loop] + reach[loop, None] * _outward(positions[loop]) for loop in _rims(positions, radii)]
 
 
