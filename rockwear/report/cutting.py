@@ -77,7 +77,7 @@ def key_results(run):
         tile("worn volume", "worn_volume", "m3/m", "by Archard's law"),
         *[tile(f"hottest {body}", f"{body}_temperature_max", "K") for body in ("tool", "rock")
           if math.isfinite(run.result(f"{body}_temperature_max"))],
-        ("cracks", f"{run.result('tensile_cracks')} + {run.result('shear_cracks')}", "tensile + shear, in the rock as it is now"),
+        ("cracks", f"{run.result('tensile_cracks')} + {run.result('shear_cracks')}", "tensile + shear, at the end"),
         ("particles", f"{run.result('rock_particles')} + {run.result('tool_particles')}", "rock + tool"),
         ("time step", f"{number(1e9 * step)} ns", f"{percent(step, critical)} of the critical"),
         ("energy residual", percent(energy.get("residual", math.nan), energy.get("tool_work", 0.0)),
@@ -289,7 +289,8 @@ def hottest(run, shot):
     """Highest temperatures now, in words."""
     count = len(run.model["rock_radii"])
     bodies = {"rock": shot["temperature"][:count], "tool": shot["temperature"][count:][shot["alive"]]}
-    return ", ".join(f"{name} up to {quantity(np.nanmax(values), 'K')}" for name, values in bodies.items() if len(values))
+    return ", ".join(f"{name} up to {quantity(np.nanmax(values), 'K')}"
+                     for name, values in bodies.items() if len(values))
 
 
 def present(run, shot):

@@ -145,7 +145,7 @@ def parameters(run):
                for name, entry in wall.get("by_engine", {}).items()]
     phases = [(words(name), f"{wall[name]:.2f}") for name in wall if name not in ("unit", "by_engine")]
     versions = [(name, version) for name, version in run.summary.get("versions", {}).items()]
-    chosen = [(name, repr(value) if isinstance(value, float) else value) for name, value in run.parameters.items()]
+    chosen = [(name, f"{value:.12g}" if isinstance(value, float) else value) for name, value in run.parameters.items()]
     return Section("How it was run", "Parameters in SI, defaults included.", [
         folded("All parameters", table(chosen, ("parameter", "value"))),
         folded("Versions and wall time", beside(
