@@ -135,7 +135,9 @@ class Cutting:
         self.rock = Specimen(width=v.width, height=v.height, radius_min=v.radius_min, radius_max=v.radius_max,
                              porosity=v.porosity, seed=v.seed, bonding_gap=v.bonding_gap, coarsening=v.coarsening,
                              fine_depth=v.fine_depth, density=v.rock_density)
-        self.rock.support("bottom", "right")
+        # The specimen stands for a part of a rock mass: its sides are held where no chip can reach them.
+        self.rock.support("bottom")
+        self.rock.support("left", "right", below=v.height - 3 * v.depth_of_cut)
         self.tool = Tool(vertices=vertices, radius_min=v.tool_radius_min, radius_max=v.tool_radius_max, seed=v.seed,
                          removal=v.removal, material=self.tool_material)
         self._choose_time_step(v)

@@ -1,6 +1,7 @@
 """Specimens of bonded rock: packing (kept in a cache), support, bonds, and the particles in YADE."""
 import hashlib
 import json
+import math
 import os
 from pathlib import Path
 
@@ -88,14 +89,14 @@ class Specimen:
         self.inertias = 0.5 * self.masses * self.radii**2
         self.supported = np.zeros(self.count, bool)
 
-    def support(self, *faces):
-        """Hold the particles that touch these faces ("bottom", "left", "right") of the box."""
+    def support(self, *faces, below=math.inf):
+        """Hold the particles that touch these faces ("bottom", "left", "right") of the box, below a height (m)."""
         x, y, r = *self.positions.T, self.radii * 1.05
         touches = {"bottom": y < r, "left": x < r, "right": x > self.width - r}
         for face in faces:
             if face not in touches:
                 raise ParameterError("support", face, f"one of {', '.join(touches)}")
-            self.supported |= touches[face]
+            self.supported |= touches[face] & (y < below)
 
     def report(self):
         """{name: (value, unit)}: how the packing came out."""

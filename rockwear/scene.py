@@ -124,7 +124,7 @@ class ToolBodies:
 
     def state(self):
         """Which body is which particle."""
-        return {"bodies": np.array(list(self.body_of.items()), int).reshape(-1, 2), "offset": self.offset}
+        return {"bodies": np.array(list(self.body_of.items()), int).reshape(-1, 2), "offset": self.offset.copy()}
 
     def restore(self, state):
         """Take back what `state` gave."""

@@ -42,7 +42,7 @@ class Engine:
         """Find YADE's objects again: the scene in O has just been built or loaded."""
 
     def state(self):
-        """What must survive a restart: a dict of numbers, arrays, and dicts of them."""
+        """What must survive a restart: a dict of numbers, copied arrays, and dicts of them."""
         return {}
 
     def restore(self, state):

@@ -117,7 +117,7 @@ class Bonds(Engine):
         return energy
 
     def state(self):
-        return {"status": self.status, "cracks": np.array(self.cracks, float).reshape(-1, len(Crack._fields)),
+        return {"status": self.status.copy(), "cracks": np.array(self.cracks, float).reshape(-1, len(Crack._fields)),
                 "energy_released": self.energy_released}
 
     def restore(self, state):
@@ -223,7 +223,7 @@ class RockFriction(Engine):
         return self.sampled + self.booked
 
     def state(self):
-        return {"work": self.work, "sampled": self.sampled, "booked": self.booked,
+        return {"work": self.work.copy(), "sampled": self.sampled, "booked": self.booked,
                 "dissipation": self.law.plasticDissipation()}
 
     def restore(self, state):

@@ -129,7 +129,7 @@ class Heat(Engine):
     def state(self):
         network = self.network.state()
         return {"network": network, "carried_away": self.carried_away, "replaced": self.replaced, "clock": self.clock,
-                "surface_time": self.surface_time, "exposed": self.exposed, "initial_content": self.initial_content,
+                "surface_time": self.surface_time, "exposed": self.exposed.copy(), "initial_content": self.initial_content,
                 "touched": np.array(sorted(self.exchanged_with), int).reshape(-1, 2)}
 
     def restore(self, state):

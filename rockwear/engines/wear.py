@@ -115,10 +115,11 @@ class ToolContact(Engine):
 
     def state(self):
         pairs = sorted(self.touching)
-        return {"tool_work": self.tool_work, "rock_work": self.rock_work, "wearing_work": self.wearing_work,
+        return {"tool_work": self.tool_work.copy(), "rock_work": self.rock_work.copy(),
+                "wearing_work": self.wearing_work.copy(),
                 "touching": np.array([(i, j, self.touching[i, j]) for i, j in pairs], float).reshape(-1, 3),
                 "booked": self.booked, "dissipation": self.friction, "work_done": self.work_done,
-                "dashpot_dissipated": self.dashpot_dissipated, "impulse": self.impulse}
+                "dashpot_dissipated": self.dashpot_dissipated, "impulse": self.impulse.copy()}
 
     def restore(self, state):
         for name in ("tool_work", "rock_work", "wearing_work", "impulse"):

@@ -62,7 +62,7 @@ class Erosion:
         """Add worn volume (n,) m3 and remove what is worn away. -> (removed, uncovered) lists of indices, in order.
 
         With the conserving rule the excess goes in equal parts to the particles that a removal uncovers, or where it
-        uncovers none to the particle's remaining neighbours, or to the rest of the skin: no volume is ever lost.
+        uncovers none to the nearest particles that are left: no volume is ever lost.
         """
         self.archard_volume += float(np.sum(volume))
         self.stored += volume
@@ -89,11 +89,22 @@ class Erosion:
 
     def _pass_on(self, i, newly):
         excess, self.stored[i] = self.stored[i] - self.volumes[i], 0.0
-        heirs = newly or [j for j in self._neighbours[i] if self.alive[j]] or sorted(self.skin)
+        heirs = newly or self._nearest_alive(i)
         for j in heirs:
             self.stored[j] += excess / len(heirs)
         if not heirs:
             self.beyond += excess
+
+    def _nearest_alive(self, i):
+        """Living particles nearest to a removed one along contacts, over others that are gone."""
+        seen, shell = {i}, [i]
+        while shell:
+            shell = sorted({j for k in shell for j in self._neighbours[k]} - seen)
+            living = [j for j in shell if self.alive[j]]
+            if living:
+                return living
+            seen.update(shell)
+        return []
 
     def detached(self):
         """Indices of living particles no longer connected with an anchored one (all of them when none is anchored)."""
@@ -137,7 +148,7 @@ class Erosion:
 
     def state(self):
         """What must survive a restart."""
-        return {"alive": self.alive, "skin": np.array(sorted(self.skin), int), "stored": self.stored,
+        return {"alive": self.alive.copy(), "skin": np.array(sorted(self.skin), int), "stored": self.stored.copy(),
                 "archard_volume": self.archard_volume, "lost_with_pieces": self.lost_with_pieces, "beyond": self.beyond}
 
     def restore(self, state):

@@ -59,6 +59,18 @@ def test_excess_goes_to_what_is_uncovered_and_on_through_the_body():
     assert body.stored[2] == pytest.approx(0.25 * 4 * R * R)
 
 
+def test_excess_crosses_a_gap_to_the_nearest_and_no_further():
+    body = block(6, 1)
+    body.skin = {0, 2, 5}
+    body.wear(np.array([4 * R * R, 0, 0, 0, 0, 0]))
+    body.skin.discard(1)
+    body.alive[1] = False
+    body.alive[3] = False
+    before = body.stored.copy()
+    body.wear(np.array([0, 0, 1.5 * 4 * R * R, 0, 0, 0]))
+    assert body.stored[4] - before[4] == pytest.approx(0.5 * 4 * R * R) and body.stored[5] == before[5]
+
+
 def test_depth_rule_passes_nothing_on():
     body = block(5, 1, "depth")
     removed, _ = body.wear(np.array([2.25 * 4 * R * R, 0, 0, 0, 0]))

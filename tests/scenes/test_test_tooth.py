@@ -163,6 +163,20 @@ def test_a_table_of_yade_batch_gives_a_folder_a_row(tmp_path):
     assert found == {"weak": 0.1e6, "strong": 0.2e6}, done.stdout + done.stderr
 
 
+def test_every_cycle_starts_on_the_rock_that_the_start_up_left(tmp_path):
+    run = test_tooth(tmp_path / "out", heat="false", snapshot_period=1e-5, **{**TINY, "start_up": 3e-4, "cycles": 3,
+                                                                              "cycle_time": 5e-4})
+    shots = [np.load(file) for file in sorted((run.out / "snapshots").glob("*.npz"))]
+    stages = [int(shot["stage"]) for shot in shots]
+    left = shots[max(i for i, stage in enumerate(stages) if stage == 0)]
+    starts = [shots[stages.index(n)] for n in (1, 2, 3)]
+    ends = [shots[max(i for i, stage in enumerate(stages) if stage == n)] for n in (1, 2, 3)]
+    assert (ends[0]["status"] != 0).sum() > (left["status"] != 0).sum() > 0
+    for shot in starts:
+        assert np.array_equal(shot["status"], left["status"])
+        assert np.array_equal(shot["rock_positions"], left["rock_positions"])
+
+
 def test_vtk_on_request(tmp_path):
     run = test_tooth(tmp_path / "out", "--vtk", **TINY)
     lines = sorted((run.out / "vtk").glob("tool.*.vtk"))[-1].read_text().splitlines()
