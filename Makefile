@@ -29,7 +29,7 @@ setup: ## install what is missing (Debian packages), check that YADE runs
 	@yade --version >/dev/null 2>&1 || { echo "setup: YADE is installed but does not start (try: yade --version)" >&2; exit 1; }
 
 run: setup ## the main job: the test tooth of M 9.2; report in out/test_tooth/report.html
-	$(TOOTH) --out $(OUT)/test_tooth
+	$(TOOTH) --coarsening 3 --out $(OUT)/test_tooth
 
 test: setup ## all tests
 	$(PYTHON) -m pytest tests

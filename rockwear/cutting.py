@@ -47,9 +47,9 @@ PARAMETERS = [
     # tool
     Parameter("tooth_height", 0.07, "m", above_zero, "height of the tooth", "ours: M shows it in a figure only"),
     Parameter("tooth_width", 0.045, "m", above_zero, "width of the tooth at its top", "ours"),
-    Parameter("rake", 10.0, "deg", number(-80, 80), "rake angle, from the vertical", "ours"),
-    Parameter("clearance", 10.0, "deg", number(0, 80), "clearance angle, from the horizontal", "ours"),
-    Parameter("tip_radius", 2e-3, "m", above_zero, "rounding of the tip", "ours"),
+    Parameter("rake", 0.0, "deg", number(-80, 80), "rake angle, from the vertical", "ours"),
+    Parameter("clearance", 3.0, "deg", number(0, 80), "clearance angle, from the horizontal", "ours"),
+    Parameter("tip_radius", 4e-3, "m", above_zero, "rounding of the tip", "ours"),
     Parameter("outline", "", "", text, "CSV file of x, y in m: a tooth of your own in place of the five above"),
     Parameter("tool_radius_min", 0.4e-3, "m", above_zero, "smallest radius of tool particles", "M 9.2"),
     Parameter("tool_radius_max", 0.52e-3, "m", above_zero, "largest radius of tool particles", "M 9.2"),
@@ -62,11 +62,11 @@ PARAMETERS = [
     Parameter("tool_conductivity", 60.0, "W/mK", above_zero, "conductivity of the steel", "M 7.4"),
     # motion
     Parameter("velocity", 4.0, "m/s", above_zero, "cutting velocity", "M 9.2"),
-    Parameter("depth_of_cut", 0.01, "m", above_zero, "depth of cut", "ours"),
+    Parameter("depth_of_cut", 0.008, "m", above_zero, "depth of cut", "ours"),
     Parameter("approach", 0.5e-3, "m", number(0), "free way before the tool meets the rock", "ours"),
     Parameter("start_up", 0.005, "s", above_zero, "time of the start-up cut", "M 9.1"),
     Parameter("cycles", 3, "", integer(0), "cycles after the start-up, each on the rock that the start-up left"),
-    Parameter("cycle_time", 0.005, "s", above_zero, "time of a cycle", "ours"),
+    Parameter("cycle_time", 0.007, "s", above_zero, "time of a cycle", "ours"),
     Parameter("background_damping", 500.0, "1/s", number(0), "global viscous damping, rate of decay", "ours: M gives none"),
     # wear
     Parameter("steel", "MET91", "", choice("MET71", "MET91"), "hardness table", "M 9.2, table 6.1"),
