@@ -1,5 +1,6 @@
 """The tool: a parametric or given outline filled with particles, rigid, with a skin that meets the rock."""
 import numpy as np
+from scipy.spatial import cKDTree
 
 from .kernels import outline, packing
 from .kernels.checks import positive
@@ -11,6 +12,16 @@ POROSITY = 0.13
 """Of the packing that fills the outline (P 5.2). Its mass and volume are those of the outline."""
 NEIGHBOUR_GAP = 0.2
 """Particles whose gap is below this part of the mean radius are neighbours: they conduct, and uncover one another."""
+NEAREST = 3
+"""So many nearest particles are neighbours in any case: what rattles in its cage is no loose piece."""
+
+
+def neighbours(positions, radii):
+    """Pairs (m, 2), i < j, of particles that are neighbours."""
+    near = packing.contacts(positions, radii, NEIGHBOUR_GAP * float(radii.mean()))
+    closest = cKDTree(positions).query(positions, NEAREST + 1)[1][:, 1:]
+    own = np.repeat(np.arange(len(radii)), NEAREST)
+    return np.unique(np.sort(np.vstack([near, np.column_stack([own, closest.ravel()])]), axis=1), axis=0)
 
 
 class Tool:
@@ -27,7 +38,7 @@ class Tool:
         self.area = outline.area(self.vertices)
         stored = cached(lambda: self._fill(radius_min, radius_max, seed, material.conductivity),
                         polygon=self.vertices.tolist(), radius_min=radius_min, radius_max=radius_max, seed=seed,
-                        porosity=POROSITY, gap=NEIGHBOUR_GAP, conductivity=material.conductivity)
+                        porosity=POROSITY, gap=NEIGHBOUR_GAP, nearest=NEAREST, conductivity=material.conductivity)
         self.positions, self.radii, pairs = stored["positions"], stored["radii"], stored["pairs"]
         self.conductance = float(stored["conductance"])
         self.count = len(self.radii)
@@ -41,15 +52,14 @@ class Tool:
     def _fill(self, radius_min, radius_max, seed, conductivity):
         filled = packing.pack(polygon=self.vertices, radius_min=radius_min, radius_max=radius_max, porosity=POROSITY,
                               seed=seed)
-        gap = NEIGHBOUR_GAP * 0.5 * (radius_min + radius_max)
         # One conductance for every pair, fitted on a square of the same packing: the outline itself may be any shape.
         side = 50 * radius_max
         square = packing.pack(box=(side, side), radius_min=radius_min, radius_max=radius_max, porosity=POROSITY, seed=seed)
         fitted = calibrated_conductance(positions=square.positions, conductivity=conductivity, conductance=1.0,
-                                        edges=packing.contacts(square.positions, square.radii, gap))
+                                        edges=neighbours(square.positions, square.radii))
         distance = -outline.signed_distance(filled.positions, self.vertices)
         return {"positions": filled.positions, "radii": filled.radii, "conductance": fitted[0],
-                "pairs": packing.contacts(filled.positions, filled.radii, gap), "at_boundary": distance < 1.3 * filled.radii}
+                "pairs": neighbours(filled.positions, filled.radii), "at_boundary": distance < 1.3 * filled.radii}
 
     def _mounted(self):
         x, y = self.positions.T

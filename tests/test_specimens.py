@@ -1,0 +1,84 @@
+"""Rock and tool before YADE: sizes, porosity, support, strengths, and a tool that hangs together."""
+import math
+
+import numpy as np
+import pytest
+
+from rockwear import rock, tool
+from rockwear.kernels.checks import ParameterError
+from rockwear.kernels.conduction import effective_conductivity
+from rockwear.kernels.outline import area, tooth
+from rockwear.kernels.packing import pack
+from rockwear.materials import STEEL
+
+M_SPECIMEN = dict(width=0.109, height=0.109, radius_min=1e-3, radius_max=1.5e-3, porosity=0.12, bonding_gap=1e-4, density=2500)
+
+
+@pytest.fixture(autouse=True)
+def cache(tmp_path_factory, monkeypatch):
+    monkeypatch.setenv("ROCKWEAR_CACHE", str(tmp_path_factory.getbasetemp() / "specimens"))
+
+
+def test_specimen_of_m_5_1():
+    specimen = rock.Specimen(seed=1, **M_SPECIMEN)
+    assert abs(specimen.count - 2100) < 40
+    assert abs(specimen.porosity - 0.12) < 0.002
+    assert specimen.masses.sum() == pytest.approx(2500 * 0.109**2, rel=1e-12)
+    assert specimen.report()["coordination"][0] == pytest.approx(4.8, abs=0.2)
+    assert specimen.radii.min() >= 1e-3 * (1 - 1e-12) and specimen.radii.max() <= 1.5e-3 * (1 + 1e-12)
+
+
+def test_graded_rock_is_coarse_below_and_its_bonds_stronger_in_proportion():
+    specimen = rock.Specimen(seed=1, coarsening=4, **M_SPECIMEN)
+    uniform = rock.Specimen(seed=1, **M_SPECIMEN)
+    y = specimen.positions[:, 1]
+    assert specimen.count < 0.55 * uniform.count
+    assert specimen.radii[y > 0.109 - 0.03].mean() == pytest.approx(uniform.radii.mean(), rel=0.08)
+    assert specimen.radii[y < 0.02].mean() == pytest.approx(4 * uniform.radii.mean(), rel=0.2)
+    assert specimen.strength_factor.max() > 3 and specimen.strength_factor.min() == pytest.approx(1)
+    assert np.all(uniform.strength_factor == 1)
+
+
+def test_support_holds_the_faces_below_a_height():
+    specimen = rock.Specimen(seed=1, **M_SPECIMEN)
+    specimen.support("bottom")
+    assert specimen.supported.sum() == pytest.approx(0.109 / 2.5e-3, abs=6)
+    specimen.support("left", below=0.05)
+    x, y = specimen.positions[specimen.supported].T
+    assert np.all((y < 2e-3) | ((x < 2e-3) & (y < 0.05)))
+    with pytest.raises(ParameterError, match="^support = top"):
+        specimen.support("top")
+
+
+def test_the_cache_gives_back_the_same_packing(tmp_path, monkeypatch):
+    monkeypatch.setenv("ROCKWEAR_CACHE", str(tmp_path))
+    first, again = (rock.Specimen(seed=7, **{**M_SPECIMEN, "width": 0.03, "height": 0.03}) for _ in range(2))
+    assert np.array_equal(first.positions, again.positions) and len(list(tmp_path.glob("*.npz"))) == 1
+    next(tmp_path.glob("*.npz")).write_bytes(b"cut short")
+    assert np.array_equal(rock.Specimen(seed=7, **{**M_SPECIMEN, "width": 0.03, "height": 0.03}).positions, first.positions)
+
+
+def make_tool(**changes):
+    shape = dict(height=0.02, width=0.015, rake=math.radians(10), clearance=math.radians(10), tip_radius=1e-3)
+    return tool.Tool(vertices=tooth(**shape), radius_min=0.4e-3, radius_max=0.52e-3, seed=1, removal="volume", material=STEEL, **changes)
+
+
+def test_tool_has_the_mass_of_its_outline_and_no_loose_particle():
+    made = make_tool()
+    assert made.volumes.sum() == pytest.approx(area(made.vertices), rel=1e-12)
+    assert made.masses.sum() == pytest.approx(7830 * area(made.vertices), rel=1e-12)
+    assert made.erosion.detached().size == 0
+    skin = np.array(sorted(made.erosion.skin))
+    assert not made.mounted[skin].any() and len(skin) > 30
+    assert made.positions[skin, 1].min() < 0.6e-3
+
+
+def test_tool_conducts_like_steel():
+    """The pairs' one conductance, fitted on one packing, holds on others to the scatter between packings of this size."""
+    made = make_tool()
+    found = []
+    for seed in range(2, 6):
+        square = pack(box=(0.026, 0.026), radius_min=0.4e-3, radius_max=0.52e-3, porosity=tool.POROSITY, seed=seed)
+        found.append(effective_conductivity(positions=square.positions, conductance=made.conductance,
+                                            edges=tool.neighbours(square.positions, square.radii)).mean())
+    assert np.mean(found) == pytest.approx(60, rel=0.03)
