@@ -47,9 +47,9 @@ PARAMETERS = [
     # tool
     Parameter("tooth_height", 0.07, "m", above_zero, "height of the tooth", "ours: M shows it in a figure only"),
     Parameter("tooth_width", 0.045, "m", above_zero, "width of the tooth at its top", "ours"),
-    Parameter("rake", -15.0, "deg", number(-80, 80), "rake angle, from the vertical", "ours"),
-    Parameter("clearance", 8.0, "deg", number(0, 80), "clearance angle, from the horizontal", "ours"),
-    Parameter("tip_radius", 3e-3, "m", above_zero, "rounding of the tip", "ours"),
+    Parameter("rake", 0.0, "deg", number(-80, 80), "rake angle, from the vertical", "ours"),
+    Parameter("clearance", 3.0, "deg", number(0, 80), "clearance angle, from the horizontal", "ours"),
+    Parameter("tip_radius", 4e-3, "m", above_zero, "rounding of the tip", "ours"),
     Parameter("outline", "", "", text, "CSV file of x, y in m: a tooth of your own in place of the five above"),
     Parameter("tool_radius_min", 0.4e-3, "m", above_zero, "smallest radius of tool particles", "M 9.2"),
     Parameter("tool_radius_max", 0.52e-3, "m", above_zero, "largest radius of tool particles", "M 9.2"),
