@@ -10,7 +10,9 @@ import numpy as np
 from .kernels import packing
 from .kernels.checks import ParameterError, not_negative, positive, require, within
 
-CACHE_VERSION = 1
+CACHE_VERSION = 2
+TILE = 8000
+"""Particles above which a specimen is put together from periodic tiles."""
 
 
 def cache_folder():
@@ -50,6 +52,19 @@ def graded_radius(*, top, fine_depth, coarsening, over):
     return factor
 
 
+def pack_uniform(box, *, radius_min, radius_max, **common):
+    """A packing of the whole box at once, or for large boxes of periodic tiles of at most TILE particles each."""
+    area = math.pi * (radius_min**2 + radius_min * radius_max + radius_max**2) / 3
+    count = box[0] * box[1] / area
+    if not count > TILE:
+        return packing.pack(box=box, radius_min=radius_min, radius_max=radius_max, **common)
+    side = math.sqrt(TILE * area)
+    repeats = [math.ceil(length / side) for length in box]
+    part = packing.pack(box=tuple(length / n for length, n in zip(box, repeats)), periodic=(True, True),
+                        radius_min=radius_min, radius_max=radius_max, **common)
+    return packing.tile(part, repeats)
+
+
 class Specimen:
     """A box of bonded discs of thickness 1 m.
 
@@ -72,9 +87,10 @@ class Specimen:
             key.update(coarsening=coarsening, fine_depth=fine_depth)
 
         def make():
+            common = dict(radius_min=radius_min, radius_max=radius_max, porosity=porosity, seed=seed)
             field = graded_radius(top=height, fine_depth=fine_depth, coarsening=coarsening, over=fine_depth)
-            made = packing.pack(box=(width, height), radius_min=radius_min, radius_max=radius_max, porosity=porosity,
-                                seed=seed, radius_scale=field if coarsening > 1 else None)
+            made = (packing.pack(box=(width, height), radius_scale=field, **common) if coarsening > 1
+                    else pack_uniform((width, height), **common))
             return {"positions": made.positions, "radii": made.radii, "scale": made.scale}
 
         stored = cached(make, **key)

@@ -39,6 +39,17 @@ def test_graded_rock_is_coarse_below_and_its_bonds_stronger_in_proportion():
     assert np.all(uniform.strength_factor == 1)
 
 
+def test_a_large_specimen_is_tiled_and_as_dense_everywhere():
+    specimen = rock.Specimen(seed=1, **{**M_SPECIMEN, "width": 0.33, "height": 0.22})
+    assert specimen.count > rock.TILE
+    assert abs(specimen.porosity - 0.12) < 0.002
+    x, y = specimen.positions.T
+    degree = np.bincount(specimen.pairs.ravel(), minlength=specimen.count)
+    seam = (abs(x - 0.165) < 4e-3) & (y > 0.01) & (y < 0.21)
+    inside = (abs(x - 0.08) < 0.03) & (y > 0.01) & (y < 0.21)
+    assert degree[seam].mean() == pytest.approx(degree[inside].mean(), abs=0.2)
+
+
 def test_support_holds_the_faces_below_a_height():
     specimen = rock.Specimen(seed=1, **M_SPECIMEN)
     specimen.support("bottom")

@@ -11,8 +11,9 @@ import numpy as np
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-SMALL = dict(width=0.06, height=0.04, radius_min=1.5e-3, radius_max=2.2e-3, tooth_height=0.03, tooth_width=0.02, rake=10, clearance=10, tip_radius=2e-3,
-             depth_of_cut=0.01, rake=10, clearance=10, tip_radius=2e-3, start_up=0.0012, cycles=1, cycle_time=4e-4, snapshot_period=4e-4)
+SMALL = dict(width=0.06, height=0.04, radius_min=1.5e-3, radius_max=2.2e-3, tooth_height=0.03, tooth_width=0.02,
+             rake=10, clearance=10, tip_radius=2e-3, depth_of_cut=0.01, start_up=0.0012, cycles=1, cycle_time=4e-4,
+             snapshot_period=4e-4)
 """A test tooth in miniature: every mechanism of the real one in a few seconds."""
 
 
