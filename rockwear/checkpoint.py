@@ -1,8 +1,11 @@
 """Checkpoints: the YADE scene and our own state in one folder, written so that at no moment the last good one is gone."""
+import errno
+import gzip
 import hashlib
 import json
 import os
 import shutil
+import zlib
 from pathlib import Path
 
 import numpy as np
@@ -57,6 +60,7 @@ def save(folder, *, identity, state, write_scenes):
     try:
         write_scenes(directory)
         np.savez(directory / "state.npz", **dict(_flatten(state)))
+        _check_whole(directory)
         files = {file.name: _digest(file) for file in sorted(directory.iterdir())}
         pointer = folder / "current.json.new"
         pointer.write_text(json.dumps({"format": FORMAT, "set": number, "files": files, "identity": identity}, indent=1))
@@ -70,6 +74,17 @@ def save(folder, *, identity, state, write_scenes):
     for old in folder.iterdir():
         if old.name.isdigit() and int(old.name) < number:
             shutil.rmtree(old, ignore_errors=True)
+
+
+def _check_whole(directory):
+    """Raise OSError where YADE, which does not tell, could not write a scene to its end (a full disk)."""
+    for file in directory.glob("*.gz"):
+        try:
+            with gzip.open(file) as stream:
+                while stream.read(1 << 20):
+                    pass
+        except (EOFError, zlib.error) as error:
+            raise OSError(errno.ENOSPC, f"{file.name} was not written to its end") from error
 
 
 def load(folder, identity):
