@@ -311,13 +311,17 @@ def paint_temperature(axes, run, shot, cold, norm):
 
 
 def wear_limits(run, shot, margin=2.0):
-    """Limits in mm, in the tool's own frame, around what is gone or clearly worn; around the tip if nothing is."""
+    """Limits in mm, in the tool's own frame, around most of what is gone or clearly worn; around the tip if nothing is."""
     model, depth = run.model, shot["worn_depth"]
     worn = MM * model["tool_positions"][~shot["alive"] | (depth > 0.5 * model["tool_radii"].max())]
     tip = MM * model["outline"][np.argmin(model["outline"][:, 1])]
+    if len(worn):
+        away = np.linalg.norm(worn - tip, axis=1)
+        worn = worn[away <= np.percentile(away, 85)]
     points = np.vstack([worn, tip - 3, tip + 3])
     (left, bottom), (right, top) = points.min(axis=0) - margin, points.max(axis=0) + margin
-    return left, right, bottom, top
+    aside = max(0.0, 0.8 * (top - bottom) - (right - left)) / 2
+    return left - aside, right + aside, bottom, top
 
 
 def wear(run):
