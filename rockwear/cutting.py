@@ -8,7 +8,7 @@ import numpy as np
 from yade import InsertionSortCollider, O, utils
 
 from . import engines, scene, vtk
-from .engines.bonds import Bonds, RockFriction
+from .engines.bonds import Bonds, Crack, RockFriction
 from .engines.heat import Heat
 from .engines.motion import BackgroundDamping, Foresight
 from .engines.record import Recorder, RunEnded, Watch
@@ -148,6 +148,7 @@ class Cutting:
         self.stages = [(name, max(1, round(seconds / self.time_step))) for name, seconds in steps.items()]
         self.stage, self.clock = 0, 0.0
         self.book = {"kinetic": 0.0, "elastic": 0.0, "contact_elastic": 0.0}
+        self.cracks_of_past_cycles = []
 
     # ---- parameters
 
@@ -346,6 +347,7 @@ class Cutting:
         """The rock of the start-up's end, and in it the tool as it is worn now (M 9.1)."""
         friction = self.contact.friction, self.rock_friction.law.plasticDissipation()
         released, alive = self.bonds.energy_released, self.tool.erosion.alive
+        self.cracks_of_past_cycles += self.bonds.cracks[len(self.start["bonds"]["cracks"]):]
         O.load(str(folder / "start_up.yade.gz"))
         self.bonds.restore(self.start["bonds"])
         self.bonds.energy_released = released
@@ -367,6 +369,7 @@ class Cutting:
         """All of ours that a restart needs, beside YADE's scene."""
         state = {"stage": self.stage, "first_iteration": self.first_iteration, "clock": self.clock, "book": self.book,
                  "base": self.base, "bodies": self.bodies.state(), "start": getattr(self, "start", {}),
+                 "cracks": np.array(self.cracks_of_past_cycles, float).reshape(-1, len(Crack._fields)),
                  "engines": {engine.name: engine.state() for engine in self.live},
                  "last_iteration": {engine.name: engine.last_iteration for engine in self.live}}
         return state
@@ -387,6 +390,7 @@ class Cutting:
         self.book = {name: float(value) for name, value in state["book"].items()}
         self.base = {name: float(value) for name, value in state["base"].items()}
         self.start = state["start"] if "start" in state else {}
+        self.cracks_of_past_cycles = [Crack(*row) for row in state["cracks"].tolist()]
         self.bodies.restore(state["bodies"])
         for engine in self.live:
             engine.restore(state["engines"].get(engine.name, {}))
@@ -459,6 +463,12 @@ class Cutting:
             worn["temperature"] = shot["temperature"][rock.count:][alive]
         vtk.write(folder / f"rock.{number:04d}.vtk", shot["rock_positions"], fields)
         vtk.write(folder / f"tool.{number:04d}.vtk", tool.positions[alive] + shot["tool_offset"], worn)
+
+    def tables(self):
+        """{file: (header, rows)} of further tables: every bond that broke, over all cycles, in order of time."""
+        units = "s m m m - - - - J - -".split()
+        header = [f"{name} [{unit}]" for name, unit in zip(Crack._fields, units)]
+        return {"cracks.csv": (header, sorted(self.cracks_of_past_cycles + self.bonds.cracks))}
 
     def progress(self):
         """A few words on how it stands."""

@@ -14,7 +14,7 @@ import numpy as np
 import yade
 
 from . import __version__, checkpoint, parameters, report
-from .engines.record import RunEnded
+from .engines.record import RunEnded, write_table
 from .kernels.checks import ParameterError
 from .parameters import Parameter, above_zero, flag, text
 
@@ -106,7 +106,7 @@ class Run:
         else:
             for old in ("snapshots", "checkpoint", "figures", "vtk"):
                 shutil.rmtree(self.folder / old, ignore_errors=True)
-            for old in ("summary.json", "history.csv", "report.html"):
+            for old in ("summary.json", "history.csv", "cracks.csv", "report.html"):
                 (self.folder / old).unlink(missing_ok=True)
             (self.folder / "snapshots").mkdir()
             self.scene.build()
@@ -210,6 +210,8 @@ class Run:
     def _write_summary(self, ended):
         scene = self.scene
         scene.recorder.write(self.folder / "history.csv")
+        for name, (header, rows) in scene.tables().items():
+            write_table(self.folder / name, header, rows)
         ours = {engine.name: {"seconds": engine.wall_time, "visits": engine.visits} for engine in scene.live}
         python = sum(engine.wall_time for engine in scene.live)
         summary = {

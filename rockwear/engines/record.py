@@ -36,11 +36,16 @@ class Recorder(Engine):
         self.header, self.rows = [str(name) for name in state["header"]], state["rows"].tolist()
 
     def write(self, path):
-        """history.csv: a header of `name [unit]`, a row a visit, numbers to their last digit."""
-        lines = [",".join(self.header)] + [",".join(f"{value:.10g}" for value in row) for row in self.rows]
-        temporary = path.with_suffix(".new")
-        temporary.write_text("\n".join(lines) + "\n")
-        temporary.replace(path)
+        """history.csv, a row a visit."""
+        write_table(path, self.header, self.rows)
+
+
+def write_table(path, header, rows):
+    """A CSV file: a header of `name [unit]`, then rows of numbers; in place at once or not at all."""
+    lines = [",".join(header)] + [",".join(f"{value:.10g}" for value in row) for row in rows]
+    temporary = path.with_suffix(".new")
+    temporary.write_text("\n".join(lines) + "\n")
+    temporary.replace(path)
 
 
 class Watch(Engine):

@@ -177,6 +177,18 @@ def test_every_cycle_starts_on_the_rock_that_the_start_up_left(tmp_path):
         assert np.array_equal(shot["rock_positions"], left["rock_positions"])
 
 
+def test_every_crack_is_logged_with_place_mode_and_energy(cut):
+    lines = (cut.out / "cracks.csv").read_text().splitlines()
+    assert lines[0].startswith("time [s],x [m],y [m],z [m],normal_x [-]") and "energy [J]" in lines[0]
+    table = np.array([[float(cell) for cell in line.split(",")] for line in lines[1:]])
+    assert len(table) == value(cut, "tensile_cracks") + value(cut, "shear_cracks")
+    assert table[:, 8].sum() == pytest.approx(cut.summary["audits"]["energy"]["bond_breaking"], rel=1e-6)
+    assert np.all(np.diff(table[:, 0]) >= 0) and set(table[:, 7]) <= {1, 2}
+    assert np.linalg.norm(table[:, 4:7], axis=1) == pytest.approx(1, abs=1e-9)
+    # Rn = 1e5 N and kn = 2e10 N/m: a bond broken in pure tension frees 0.25 J, one that also shears more.
+    assert np.median(table[table[:, 7] == 1, 8]) > 0.2
+
+
 def test_vtk_on_request(tmp_path):
     run = test_tooth(tmp_path / "out", "--vtk", **TINY)
     lines = sorted((run.out / "vtk").glob("tool.*.vtk"))[-1].read_text().splitlines()
