@@ -14,6 +14,7 @@ from .engines.motion import BackgroundDamping, Foresight
 from .engines.record import Recorder, RunEnded, Watch
 from .engines.wear import ToolContact, Wear
 from .kernels.archard import BRINELL, KELVIN, MET71, MET91, Hardness
+from .kernels.bond_laws import LINEAR_LAWS, linear_law
 from .kernels.checks import require
 from .kernels.conduction import HeatNetwork, calibrated_conductance, effusivity, effusivity_share
 from .kernels.outline import read_outline, tooth
@@ -40,6 +41,8 @@ PARAMETERS = [
     Parameter("kt", 20e9, "N/m", above_zero, "tangential stiffness", "M 5.1"),
     Parameter("Rn", 0.1e6, "N", above_zero, "tensile strength of a bond", "M 5.1"),
     Parameter("Rt", 1e6, "N", above_zero, "shear strength of a bond", "M 5.1"),
+    Parameter("law", "brittle", "", choice(*LINEAR_LAWS), "of the bonds; the others soften from the strength on", "M 4"),
+    Parameter("H", 1e10, "N/m", above_zero, "slope of softening, against total displacement", "M 4.6"),
     Parameter("mu", 0.839, "", number(0), "friction between rock particles after breakage", "M 5.1"),
     Parameter("rock_density", 2500.0, "kg/m3", above_zero, "bulk density of the rock", "M 7.4"),
     Parameter("rock_specific_heat", 1970.0, "J/kgK", above_zero, "specific heat of the rock", "M 7.4"),
@@ -132,6 +135,7 @@ class Cutting:
             height=v.tooth_height, width=v.tooth_width, rake=math.radians(v.rake), clearance=math.radians(v.clearance),
             tip_radius=v.tip_radius)
         self._check_size(v, vertices)
+        self.law = linear_law(v.law, kn=v.kn, kt=v.kt, Rn=v.Rn, Rt=v.Rt, H=v.H, mu=v.mu)
         self.rock = Specimen(width=v.width, height=v.height, radius_min=v.radius_min, radius_max=v.radius_max,
                              porosity=v.porosity, seed=v.seed, bonding_gap=v.bonding_gap, coarsening=v.coarsening,
                              fine_depth=v.fine_depth, density=v.rock_density)
@@ -221,8 +225,7 @@ class Cutting:
     def _make_engines(self):
         v, rock, tool = self.v, self.rock, self.tool
         self.bodies = scene.ToolBodies(tool, self.velocity)
-        self.bonds = Bonds(pairs=rock.pairs, kn=v.kn, kt=v.kt, mu=v.mu, normal_strength=v.Rn * rock.strength_factor,
-                           shear_strength=v.Rt * rock.strength_factor, clock=lambda: self.time)
+        self.bonds = Bonds(pairs=rock.pairs, law=self.law, strength_factor=rock.strength_factor, clock=lambda: self.time)
         motion = Foresight(masses=rock.masses, inertias=rock.inertias, radii=rock.radii, held=rock.supported)
         self.rock_friction = RockFriction(bonds=self.bonds, motion=motion)
         self.contact = ToolContact(tool=self.bodies, motion=motion, velocity=self.velocity)

@@ -1,95 +1,229 @@
-"""Bonds of the rock: YADE's C++ brittle law carries them, this side notices what breaks and keeps the books."""
+"""Bonds of the rock: YADE's C++ brittle law carries them to their peak, a bond law of ours from there to the end."""
 import math
 from collections import namedtuple
 
 import numpy as np
 from yade import (FrictPhys, Law2_ScGeom_FrictPhys_CundallStrack,
-                  Law2_ScGeom_JCFpmPhys_JointedCohesiveFrictionalPM, O)
+                  Law2_ScGeom_JCFpmPhys_JointedCohesiveFrictionalPM, O, Vector3)
 
 from . import SLIDING, Engine, contact_energy, law_functor
 
 INTACT, BROKEN, GONE = 0, 1, 2
 """Status of a bond: GONE is broken, long apart and let go; a later meeting is a new contact."""
+UNLIMITED = 1e30
+"""A strength (N) that no bond reaches."""
+NO_CHANGE = 1e-13
+"""Difference of two forces that is round-off, as a fraction of the force."""
 
 Crack = namedtuple("Crack", "time x y z normal_x normal_y normal_z mode energy body_1 body_2")
-"""One broken bond: s, m, unit normal, 1 tension or 2 shear, J set free, ids of the particles."""
+"""One broken bond: s, m, unit normal, 1 tension or 2 shear, J dissipated until it was gone, ids of the particles."""
+
+
+class Carried:
+    """A contact whose force is given by a law of ours, step by step, in place of the force of YADE's law.
+
+    law, bond: the law and its state; length: penetrationDepth (m) at which the opening is zero; un, Fn: opening (m)
+    and normal force (N) of the last step; spent: J dissipated so far; opened: True if it broke by opening.
+
+    YADE's contact is left such that its own law makes the next elastic trial: shearForce is our tangential force, and
+    kn, ks and initD are secants, so that -shearForce/ks is the elastic tangential displacement, which the C++ law
+    turns with the contact and carries forward. Where nothing yields, its trial is the answer, and nothing is written.
+    """
+
+    __slots__ = ("interaction", "geom", "phys", "bodies", "radii",
+                 "law", "bond", "length", "un", "Fn", "spent", "opened")
+
+    def __init__(self, *, law, bond, length, un, Fn, spent=0.0):
+        self.law, self.bond, self.length, self.un, self.Fn, self.spent = law, bond, length, un, Fn, spent
+
+    def connect(self, interaction, phys):
+        """The contact of the scene that is in O now."""
+        self.interaction, self.geom, self.phys = interaction, interaction.geom, phys
+        self.bodies, self.radii = (interaction.id1, interaction.id2), (self.geom.refR1, self.geom.refR2)
+        phys.isCohesive, phys.FnMax, phys.FsMax = True, UNLIMITED, UNLIMITED
+
+    def trial(self):
+        """Elastic tangential displacement (Vector3, m) as YADE's law has carried it into this step."""
+        phys = self.phys
+        return phys.shearForce * (-1.0 / phys.ks)
+
+    def advance(self, ut, forces):
+        """This step's force, in place of the one that YADE's law has applied.
+
+        ut: as `trial` gives it, m; forces: O.forces.
+        -> J dissipated, the work of the forces over the step (by the trapezoid, as leapfrog does it) less the gain in
+        stored energy; None where YADE's force stands.
+        """
+        geom, phys, law, bond = self.geom, self.phys, self.law, self.bond
+        normal, increment, penetration = geom.normal, geom.shearInc, geom.penetrationDepth
+        un, last, un_plastic = self.length - penetration, self.un, bond.un_plastic
+        bond.turned(ut, increment)
+        Fn, Ft = law.respond(bond, un, (ut[0], ut[1], ut[2]))
+        pull, shear = normal * -Fn, Vector3(-Ft[0], -Ft[1], -Ft[2])
+        change = pull + shear - phys.normalForce - phys.shearForce
+        before, self.un, self.Fn = self.Fn, un, Fn
+        if bond.softening < 1.0:
+            if change.squaredNorm() <= NO_CHANGE**2 * (Fn * Fn + shear.squaredNorm()):
+                return None
+        else:
+            self.opened = law.kn * (un - un_plastic) / law.Rn >= law.kt * ut.norm() / law.Rt
+        (first, second), (arm_1, arm_2), moment = self.bodies, self.radii, change.cross(normal)
+        forces.addF(first, -change)
+        forces.addF(second, change)
+        forces.addT(first, moment * (arm_1 - 0.5 * penetration))
+        forces.addT(second, moment * (arm_2 - 0.5 * penetration))
+
+        kt, ut_before = phys.ks, ut - increment
+        elastic = ut - Vector3(bond.ut_plastic)
+        work = (before + Fn) * (un - last) + (ut_before * kt - shear).dot(increment)
+        released = before * (last - un_plastic) + kt * ut_before.squaredNorm()
+        stored = Fn * (un - bond.un_plastic) - shear.dot(elastic)
+
+        phys.normalForce, phys.shearForce = pull, shear
+        phys.initD = self.length - bond.un_plastic
+        force = shear.norm()
+        if force > 0.0:
+            phys.ks = force / elastic.norm()
+        if Fn != 0.0:
+            phys.kn = Fn / (un - bond.un_plastic)
+        return 0.5 * (work + released - stored)
+
+    def hand_over(self):
+        """Leave what remains to YADE's law: Coulomb friction, on the reference and with the stiffness of our law."""
+        phys, law = self.phys, self.law
+        phys.isCohesive, phys.FnMax, phys.FsMax, phys.tanFrictionAngle = False, 0.0, 0.0, law.mu
+        phys.kn, phys.ks, phys.initD = law.kn, law.kt, self.length - self.bond.un_plastic
+
+
+def _strain_energy(phys):
+    """Strain energy (J) of a contact, Fn^2/2kn + Ft^2/2kt."""
+    return 0.5 * (phys.normalForce.squaredNorm() / phys.kn + phys.shearForce.squaredNorm() / phys.ks)
 
 
 class Bonds(Engine):
-    """The elastic perfectly brittle law (M 4.1; P 23-27) of all bonds, with a crack log.
+    """All bonds of the rock under one law (M ch. 4), with a crack log.
 
-    pairs: (m, 2) body ids; kn, kt: N/m; normal_strength, shear_strength: (m,) N; mu: friction after breakage;
+    pairs: (m, 2) body ids; law: of rockwear.kernels.bond_laws; strength_factor: (m,), a bond obeys law.scaled(factor);
     clock: a function giving the time (s) for the crack log.
 
-    YADE's JCFpm law gives Fn = kn un, Ft = kt ut until Fn > Rn or |Ft| > Rt. Its friction angle is zero, so that the
-    shear strength does not grow with compression; at breakage mu is handed over and the contact keeps its reference
-    length, so that overlaps of the packing never turn into forces. Two counters of the law are the tripwire: only
-    when one moves are the bonds looked at.
+    YADE's JCFpm law gives Fn = kn un, Ft = kt ut until Fn > FnMax or |Ft| > FsMax, which are the law's tripwire. (Its
+    friction angle is zero, so that the shear strength does not grow with compression.) Two counters of the C++ law
+    tell that a wire was tripped: only when one moves are the bonds looked at. In the same step a tripped bond goes into
+    `carried`, and Python gives its force in every step until it is gone; then YADE's law gives the Coulomb contact
+    that remains. It keeps its reference length, so that overlaps of the packing never turn into forces. A brittle bond
+    is gone in the step of its trip, and costs nothing afterwards.
+
+    A law without a tripwire (nothing is linear within) has all its bonds, and their contacts afterwards, carried by
+    Python: some microseconds a bond and step, which is fine for small specimens only.
+
+    Where a wire is tripped YADE's law forgets the shear force, or cuts it. What it was follows from where the two
+    bodies have turned since they were bonded. That is exact in 2D; in 3D its error grows with the cube of the angle,
+    and is below 1e-6 of the strength where Rt/kt is 5 thousandths of a radius.
     """
 
     name = "bonds"
 
-    def __init__(self, *, pairs, kn, kt, normal_strength, shear_strength, mu, clock):
+    def __init__(self, *, pairs, law, strength_factor=None, clock):
         super().__init__()
         self.pairs = np.asarray(pairs)
-        self.kn, self.kt, self.mu = kn, kt, mu
-        self.normal_strength, self.shear_strength = normal_strength, shear_strength
+        self.law = law
+        factors = np.ones(len(self.pairs)) if strength_factor is None else np.asarray(strength_factor, float)
+        scaled = {factor: law.scaled(factor) for factor in np.unique(factors).tolist()}
+        self.laws = [scaled[factor] for factor in factors.tolist()]
+        self.native = law.tripwire()[1] > 0.0
         self.status = np.full(len(self.pairs), INTACT, np.int8)
+        self.normals = np.zeros((len(self.pairs), 2, 3))
         self.cracks = []
+        self.carried = {}
         self.energy_released = 0.0
         self.clock = clock
 
     def bond(self):
-        """Give every fresh JCFpm interaction its stiffness and strength (once, after the bonding step)."""
-        for (i, j), normal, shear in zip(self.pairs.tolist(), self.normal_strength, self.shear_strength):
-            phys = O.interactions[i, j].phys
-            phys.kn, phys.ks, phys.FnMax, phys.FsMax = self.kn, self.kt, float(normal), float(shear)
+        """Give every fresh JCFpm interaction its stiffness and tripwire (once, after the bonding step)."""
+        for n, ((i, j), law) in enumerate(zip(self.pairs.tolist(), self.laws)):
+            interaction = O.interactions[i, j]
+            phys, normal = interaction.phys, interaction.geom.normal
+            phys.kn, phys.ks = law.kn, law.kt
+            phys.FnMax, phys.FsMax = law.tripwire()
             phys.isCohesive, phys.tanFrictionAngle = True, 0.0
+            for side, body in enumerate((interaction.id1, interaction.id2)):
+                self.normals[n, side] = O.bodies[body].state.ori.conjugate() * normal
+            if not self.native:
+                self.carried[n] = Carried(law=law, bond=law.virgin(), length=phys.initD, un=0.0, Fn=0.0)
 
     def connect(self):
         """Find the interactions of the scene that is in O now."""
-        self.law = law_functor(Law2_ScGeom_JCFpmPhys_JointedCohesiveFrictionalPM)
+        self.functor = law_functor(Law2_ScGeom_JCFpmPhys_JointedCohesiveFrictionalPM)
+        self.functor.useStrainEnergy = True
         self.intact, self.broken = {}, {}
         for n, (i, j) in enumerate(self.pairs.tolist()):
             if self.status[n] != GONE:
                 interaction = O.interactions[i, j]
-                (self.intact if self.status[n] == INTACT else self.broken)[n] = (interaction, interaction.phys)
+                if n in self.carried:
+                    self.carried[n].connect(interaction, interaction.phys)
+                elif self.status[n] == INTACT:
+                    self.intact[n] = interaction, interaction.phys
+                if self.status[n] == BROKEN:
+                    self.broken[n] = interaction, interaction.phys
         self._read_counters()
 
     def _read_counters(self):
-        self.counts = (self.law.nbTensCracks, self.law.nbShearCracks)
-        self.tension_energy = self.law.totalTensCracksE
+        self.counts = (self.functor.nbTensCracks, self.functor.nbShearCracks)
 
     def act(self):
-        """Look at two counters; where one has moved, find and book the bonds that broke in this step."""
-        if (self.law.nbTensCracks, self.law.nbShearCracks) == self.counts:
+        """The forces of carried bonds; and where one of two counters has moved, the bonds that tripped in this step."""
+        forces = O.forces
+        for n, carried in list(self.carried.items()):
+            spent = carried.advance(carried.trial(), forces)
+            if spent is not None and self.status[n] == INTACT:
+                self._book(n, carried, spent)
+        if (self.functor.nbTensCracks, self.functor.nbShearCracks) != self.counts:
+            self._read_counters()
+            for n in [n for n, (_, phys) in self.intact.items() if not phys.isCohesive]:
+                self._trip(n, *self.intact.pop(n))
+
+    def _trip(self, n, interaction, phys):
+        """Carry a bond from here on, as our law answers where YADE's has given way."""
+        geom, law = interaction.geom, self.laws[n]
+        first, second = O.bodies[interaction.id1].state, O.bodies[interaction.id2].state
+        un = phys.initD - geom.penetrationDepth - (second.vel - first.vel).dot(geom.normal) * O.dt
+        carried = self.carried[n] = Carried(law=law, bond=law.virgin(), length=phys.initD, un=un, Fn=law.kn * un)
+        carried.connect(interaction, phys)
+        spent = carried.advance(self._shear_displacement(n, geom, first, second), O.forces)
+        if carried.bond.broken:
+            # A bond that never softened sets free what it held the step before.
+            spent = phys.strainEnergy - _strain_energy(phys)
+        self._book(n, carried, spent or 0.0)
+
+    def _shear_displacement(self, n, geom, first, second):
+        """Tangential displacement (Vector3, m) of a bond in which nothing has slipped.
+
+        R1 (n - n1) + R2 (n - n2), arcs in place of chords; n1, n2: the normal at bonding as each body has turned it.
+        """
+        normal, found = geom.normal, Vector3.Zero
+        for state, radius, bonded in zip((first, second), (geom.refR1, geom.refR2), self.normals[n].tolist()):
+            turned = state.ori * Vector3(*bonded)
+            cos = turned.dot(normal)
+            aside = turned - normal * cos
+            sin = aside.norm()
+            if sin > 0.0:
+                found -= aside * (radius * math.atan2(sin, cos) / sin)
+        return found
+
+    def _book(self, n, carried, spent):
+        """Energy dissipated in a bond; and where that was the last of it, the crack."""
+        carried.spent += spent
+        self.energy_released += spent
+        if not carried.bond.broken:
             return
-        tension_energy = self.law.totalTensCracksE - self.tension_energy
-        self._read_counters()
-        broken = [n for n, (_, phys) in self.intact.items() if not phys.isCohesive]
-        openings = [self._opening(n) for n in broken]
-        in_tension = [un > self.normal_strength[n] / self.kn for n, un in zip(broken, openings)]
-        strain_energy = sum(un * un for un, tension in zip(openings, in_tension) if tension)
-        for n, un, tension in zip(broken, openings, in_tension):
-            interaction, phys = self.broken[n] = self.intact.pop(n)
-            self.status[n] = BROKEN
-            phys.tanFrictionAngle = self.mu
-            energy = tension_energy * un * un / strain_energy if tension else self._shear_energy(n, un)
-            self.energy_released += energy
-            geom = interaction.geom
-            self.cracks.append(Crack(self.clock(), *geom.contactPoint, *geom.normal,
-                                     1 if tension else 2, energy, *self.pairs[n].tolist()))
-
-    def _opening(self, n):
-        interaction, phys = self.intact[n]
-        return phys.initD - interaction.geom.penetrationDepth
-
-    def _shear_energy(self, n, un):
-        """Strain energy (J) that a bond sheared off at Rt sets free: all of it if open, else down to Coulomb's force."""
-        strength = self.shear_strength[n]
-        if un > 0:
-            return 0.5 * self.kn * un * un + 0.5 * strength**2 / self.kt
-        return 0.5 * max(strength**2 - (self.mu * self.kn * un)**2, 0.0) / self.kt
+        interaction, geom = carried.interaction, carried.geom
+        self.status[n] = BROKEN
+        self.broken[n] = interaction, carried.phys
+        if self.native:
+            carried.hand_over()
+            del self.carried[n]
+        self.cracks.append(Crack(self.clock(), *geom.contactPoint, *geom.normal, 1 if carried.opened else 2,
+                                 carried.spent, *self.pairs[n].tolist()))
 
     def let_go(self):
         """Erase broken contacts whose particles are apart, both by radii and by the bond's own length."""
@@ -98,8 +232,10 @@ class Bonds(Engine):
                 O.interactions.erase(interaction.id1, interaction.id2)
                 self.status[n] = GONE
                 del self.broken[n]
+                self.carried.pop(n, None)
         # The order in which a loaded scene would find them: sums come out equal to the last digit.
         self.broken = dict(sorted(self.broken.items()))
+        self.carried = dict(sorted(self.carried.items()))
 
     def in_contact(self):
         """(m,) bool: bonds that are intact, or broken and pressed together; what heat may pass through."""
@@ -108,22 +244,39 @@ class Bonds(Engine):
             touching[n] = phys.normalForce.squaredNorm() > 0
         return touching
 
+    def softening(self):
+        """(m,) from 0, a virgin bond, to 1, a broken one."""
+        found = np.where(self.status == INTACT, 0.0, 1.0)
+        for n, carried in self.carried.items():
+            found[n] = carried.bond.softening
+        return found
+
     def elastic_energy(self):
         """Strain energy (J) of all bonds and of broken bonds in contact, sum of Fn^2/2kn + Ft^2/2kt."""
         energy = 0.0
         for group in (self.intact, self.broken):
             for _, phys in group.values():
-                energy += 0.5 * (phys.normalForce.squaredNorm() / self.kn + phys.shearForce.squaredNorm() / self.kt)
-        return energy
+                energy += _strain_energy(phys)
+        return energy + sum(_strain_energy(carried.phys) for n, carried in self.carried.items() if n not in self.broken)
 
     def state(self):
-        return {"status": self.status.copy(), "cracks": np.array(self.cracks, float).reshape(-1, len(Crack._fields)),
-                "energy_released": self.energy_released}
+        scalars = self.law.virgin().scalars
+        carried = [(n, c.length, c.un, c.Fn, c.spent, *(getattr(c.bond, name) for name in scalars))
+                   for n, c in self.carried.items()]
+        return {"status": self.status.copy(), "normals": self.normals.copy(), "energy_released": self.energy_released,
+                "cracks": np.array(self.cracks, float).reshape(-1, len(Crack._fields)),
+                "carried": np.array(carried, float).reshape(-1, 5 + len(scalars))}
 
     def restore(self, state):
-        self.status = state["status"].copy()
+        self.status, self.normals = state["status"].copy(), state["normals"].copy()
         self.cracks = [Crack(*row[:7], int(row[7]), row[8], int(row[9]), int(row[10])) for row in state["cracks"].tolist()]
         self.energy_released = float(state["energy_released"])
+        self.carried = {}
+        for n, length, un, Fn, spent, *values in state["carried"].tolist():
+            bond = self.laws[int(n)].virgin()
+            for name, value in zip(bond.scalars, values):
+                setattr(bond, name, value)
+            self.carried[int(n)] = Carried(law=self.laws[int(n)], bond=bond, length=length, un=un, Fn=Fn, spent=spent)
 
     def log(self):
         modes = [crack.mode for crack in self.cracks]
@@ -171,15 +324,15 @@ class RockFriction(Engine):
             if normal > 0:
                 force = phys.shearForce
                 tangential = force.norm()
-                if tangential > SLIDING * self.bonds.mu * normal:
-                    self._book(interaction, self._slip_power(interaction, force, tangential) * elapsed)
+                if tangential > SLIDING * self.bonds.law.mu * normal:
+                    self._book(interaction, self._slip_power(interaction, phys, force, tangential) * elapsed)
         self._share_exact_work()
 
-    def _slip_power(self, interaction, force, tangential):
+    def _slip_power(self, interaction, phys, force, tangential):
         normal = interaction.geom.normal
         velocity = interaction.geom.incidentVel(interaction, True) + 0.5 * self.motion.gain(interaction, normal)
         slip = -force.dot(velocity) / tangential
-        taken_up = -self.bonds.mu * self.bonds.kn / self.bonds.kt * normal.dot(velocity)
+        taken_up = -self.bonds.law.mu * phys.kn / phys.ks * normal.dot(velocity)
         return tangential * max(slip - taken_up, 0.0)
 
     def _share_exact_work(self):

@@ -24,6 +24,8 @@ import numpy as np
 
 from rockwear.kernels.checks import finite, not_negative, positive, require
 
+_ORIGIN = (0.0, 0.0, 0.0)
+
 
 class Bond:
     """State of one bond; `BondLaw.virgin` makes it, `BondLaw.respond` changes it.
@@ -34,24 +36,33 @@ class Bond:
     """
 
     __slots__ = ("softening", "un_plastic", "ut_plastic")
+    scalars = ("softening", "un_plastic")
     vectors = ("ut_plastic",)
 
     def __init__(self):
         self.softening = 0.0
         self.un_plastic = 0.0
-        self.ut_plastic = (0.0, 0.0, 0.0)  # cut to the length of ut by the first zip that meets it
+        self.ut_plastic = _ORIGIN  # cut to the length of ut by the first zip that meets it
 
     @property
     def broken(self):
         """True once only a frictional contact is left."""
         return self.softening >= 1.0
 
+    def turned(self, ut, increment):
+        """Count ut anew, from where Ft vanishes: for an engine that keeps the elastic part of ut and turns it.
+
+        The next `respond` will get this ut, of which `increment` (3 floats, m, both) is new since the last one.
+        """
+        self.ut_plastic = _ORIGIN
+
 
 class BondLaw:
     """What every law shares: the contact after breakage, the stored energy, the walk along a path.
 
     A law adds `_bonded(bond, un, ut)`, which returns (Fn, Ft), or None where the bond goes in this step;
-    `_shear(bond, Fn, ut)`, the tangential force as long as nothing slips; and `tripwire()`.
+    `_shear(bond, Fn, ut)`, the tangential force as long as nothing slips; `tripwire()`; `scaled(factor)`; and the
+    attributes kt (N/m), Rn and Rt (N): shear stiffness and strengths of a virgin bond.
     """
 
     def __init__(self, *, kn, mu):
@@ -138,6 +149,12 @@ class LinearBondLaw(BondLaw):
         """(Fn, Ft) in N: while Fn and |Ft| stay within both, in any combination, a virgin bond is linear elastic."""
         return self.Rn, self.Rt
 
+    def scaled(self, factor):
+        """The law of a bond `factor` times as strong: forces and displacements grow alike, every slope stays."""
+        law = type(self).__new__(type(self))
+        vars(law).update(vars(self), Rn=self.Rn * factor, Rt=self.Rt * factor)
+        return law
+
     def fracture_energy(self):
         """Work (J) until the bond is gone in pure tension and in pure shear: R^2/(2k) + R^2/(2H), with its k and R."""
         return tuple(0.5 * R * R * (1.0 / k + 1.0 / self.H) for k, R in ((self.kn, self.Rn), (self.kt, self.Rt)))
@@ -188,10 +205,6 @@ class ElasticDamage(LinearBondLaw):
         super().__init__(kn=kn, kt=kt, Rn=Rn, Rt=Rt, H=H, mu=mu)
         require(tension_only in (True, False), "tension_only", tension_only, "True or False")
         self.tension_only = bool(tension_only)
-
-    def tripwire(self):
-        """(Fn, Ft) in N: while Fn and |Ft| stay within both, in any combination, a virgin bond is linear elastic."""
-        return self.Rn, math.inf if self.tension_only else self.Rt
 
     def _damage(self, force, k, R):
         """omega of (4.18-4.19) where an undamaged spring would carry `force`."""
@@ -252,8 +265,12 @@ class ElastoPlasticSoftening(LinearBondLaw):
         self._loss_n, self._loss_t = 1.0 / (1.0 + self.kn / self.H), 1.0 / (1.0 + self.kt / self.H)
 
     def tripwire(self):
-        """(Fn, Ft) in N: while Fn and |Ft| stay within both, in any combination, a virgin bond is linear elastic."""
-        return self.Rn / math.sqrt(2.0), self.Rt / math.sqrt(2.0)
+        """(Fn, Ft) in N: while Fn and |Ft| stay within both, in any combination, a virgin bond is linear elastic.
+
+        Of the rectangles in the ellipse the one with equal forces: near the lower strength, which is reached first.
+        """
+        force = self.Rn * self.Rt / math.hypot(self.Rn, self.Rt)
+        return force, force
 
     def _bonded(self, bond, un, ut):
         Fn = self.kn * (un - bond.un_plastic)
@@ -293,6 +310,10 @@ class Parabolic:
     def __call__(self, alpha):
         return (self.b1 * alpha + self.b2) * alpha + self.b3
 
+    def scaled(self, factor):
+        """The same curve, `factor` times as large along both axes."""
+        return Parabolic(b1=self.b1 / factor, b2=self.b2, b3=self.b3 * factor)
+
     def flow(self, excess, k, alpha):
         """Smallest plastic step g (m) that clears `excess` (N): excess - k g = H(alpha + g) - H(alpha).
 
@@ -318,6 +339,10 @@ class Hyperbolic:
         power = alpha ** self.d
         return self.b1 * power / (self.b2 + self.b3 * power)
 
+    def scaled(self, factor):
+        """The same curve, `factor` times as large along both axes."""
+        return Hyperbolic(b1=self.b1 * factor, b2=self.b2 * factor ** self.d, b3=self.b3, d=self.d)
+
     def flow(self, excess, k, alpha):
         """Plastic step g (m) that clears `excess` (N): excess - k g = H(alpha + g) - H(alpha)."""
         start, low, high = self(alpha), 0.0, excess / k
@@ -337,12 +362,17 @@ class HardeningBond(Bond):
     """
 
     __slots__ = ("alpha_n", "alpha_c", "alpha_t", "kt", "ut_last")
+    scalars = (*Bond.scalars, "alpha_n", "alpha_c", "alpha_t", "kt")
     vectors = ("ut_plastic", "ut_last")
 
     def __init__(self, kt):
         super().__init__()
         self.alpha_n = self.alpha_c = self.alpha_t = 0.0
-        self.kt, self.ut_last = kt, (0.0, 0.0, 0.0)
+        self.kt, self.ut_last = kt, _ORIGIN
+
+    def turned(self, ut, increment):
+        super().turned(ut, increment)
+        self.ut_last = tuple([u - du for u, du in zip(ut, increment)])
 
 
 class NonlinearElastoPlastic(BondLaw):
@@ -390,10 +420,18 @@ class NonlinearElastoPlastic(BondLaw):
                             self.Rc + compression(0.0)), ("eta c + shear.b3", self.eta * self.c + shear(0.0))):
             require(start > 0.0, name, start, "greater than 0", "N")
         self.tension, self.compression, self.shear = tension, compression, shear
+        self.kt, self.Rt = self._stiffness(0.0), self.eta * self.c + shear(0.0)
+
+    def scaled(self, factor):
+        """The law of a bond `factor` times as strong: forces and displacements grow alike, every slope stays."""
+        return NonlinearElastoPlastic(
+            kn=self.kn, m=self.m / factor ** (1.0 / 3.0), r=self.r * factor, eta=self.eta, c=self.c * factor,
+            Rn=self.Rn * factor, Rc=self.Rc * factor, tension=self.tension.scaled(factor),
+            compression=self.compression.scaled(factor), shear=self.shear.scaled(factor), mu=self.mu)
 
     def virgin(self):
         """State of a new bond, free of stress."""
-        return HardeningBond(self._stiffness(0.0))
+        return HardeningBond(self.kt)
 
     def tripwire(self):
         """(Fn, Ft) in N as for the other laws: nothing lies within, as kt is nowhere constant."""
@@ -441,3 +479,16 @@ class NonlinearElastoPlastic(BondLaw):
             bond.alpha_t += step
             Ft = self._slip(bond, ut, Ft, 1.0 - kt * step / norm)
         return Fn, Ft
+
+
+def linear_law(name, *, kn, kt, Rn, Rt, H, mu):
+    """The law that scenes know as "brittle", "damage" or "plastic"; H is not used by the first.
+
+    kn, kt  N/m      Rn, Rt  N      H  N/m      Raises ParameterError.
+    """
+    strength = dict(kn=kn, kt=kt, Rn=Rn, Rt=Rt, mu=mu)
+    require(name in LINEAR_LAWS, "law", name, f"one of {', '.join(LINEAR_LAWS)}")
+    return ElasticBrittle(**strength) if name == "brittle" else LINEAR_LAWS[name](H=H, **strength)
+
+
+LINEAR_LAWS = {"brittle": ElasticBrittle, "damage": ElasticDamage, "plastic": ElastoPlasticSoftening}

@@ -1,0 +1,235 @@
+"""Two particles in YADE against the bond laws themselves; writes {check: {case: number}} to the file named last."""
+import json
+import os
+import sys
+from unittest import mock
+
+ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(sys.argv[0])))))
+sys.path.insert(0, ROOT)
+
+import numpy as np  # noqa: E402
+from yade import O, Vector3, utils  # noqa: E402
+
+from rockwear import engines  # noqa: E402
+from rockwear.engines.bonds import Bonds, Carried  # noqa: E402
+from rockwear.kernels.bond_laws import (ElasticBrittle, ElasticDamage, ElastoPlasticSoftening,  # noqa: E402
+                                        NonlinearElastoPlastic, Parabolic)
+from rockwear.two_disc import lead, programme  # noqa: E402
+
+KN, KT, RN, RT, H, MU = 2e10, 1e10, 1e5, 6e4, 1e10, 0.839
+COMMON = dict(kn=KN, kt=KT, Rn=RN, Rt=RT, mu=MU)
+LAWS = {"brittle": ElasticBrittle(**COMMON), "damage": ElasticDamage(H=H, **COMMON),
+        "damage by tension only": ElasticDamage(H=H, tension_only=True, **COMMON),
+        "elasto-plastic": ElastoPlasticSoftening(H=H, **COMMON), "Padova": NonlinearElastoPlastic(),
+        "Padova, denting": NonlinearElastoPlastic(Rc=1e5, compression=Parabolic(b2=3e9))}
+LINEAR = list(LAWS)[:4]
+END_N, END_T = RN / KN + RN / H, RT / KT + RT / H
+
+
+def follow(law, un, ut):
+    """(n, 3) forces of the law itself along a path with two tangential components."""
+    bond, rows = law.virgin(), []
+    for opening, shift in zip(un.tolist(), ut.tolist()):
+        Fn, Ft = law.respond(bond, opening, tuple(shift))
+        rows.append((Fn, *Ft))
+    return np.array(rows)
+
+
+def forces(response):
+    return np.column_stack([response.Fn, response.Ft])
+
+
+def deviation(law, response):
+    """Largest difference between YADE's force and the law's at the same displacements, over the strength."""
+    return float(abs(forces(response) - follow(law, response.un, response.ut)).max() / law.Rn)
+
+
+def random_path(rng, legs=8, steps=40):
+    """Straight legs between random points, of which some are far outside the strength; two tangential directions."""
+    corners = rng.normal(size=(legs, 3)) * rng.choice([0.5, 2.0, 6.0], size=(legs, 1)) * RN / KN
+    corners[:, 0] += rng.choice([-2.0, 0.0, 1.0]) * RN / KN
+    corners = np.vstack([np.zeros(3), corners])
+    path = np.vstack([start + (end - start) * np.linspace(0.0, 1.0, steps, endpoint=False)[:, None]
+                      for start, end in zip(corners, corners[1:])])
+    return path[:, 0], path[:, 1:]
+
+
+def random_axes(rng):
+    axes = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+    axes[:, 2] = np.cross(axes[:, 0], axes[:, 1])
+    return axes
+
+
+def let_loose():
+    """Lead the pair no longer."""
+    O.engines = [*O.engines[:3], *engines.runners({"bonds": 1}), O.engines[-1]]
+
+
+def programmes(law):
+    return {kind: deviation(law, lead(law, un, ut)) for kind, (un, ut) in programme(law, END_N, END_T, 203).items()}
+
+
+def random_paths(law, plane, seeds=range(8)):
+    """Worst deviation on random paths, in the plane or in space, between unequal particles, ids in both orders."""
+    worst = 0.0
+    for seed in seeds:
+        rng = np.random.default_rng(seed)
+        un, ut = random_path(rng)
+        if plane:
+            ut[:, 1] = 0.0
+        axes = None if plane else random_axes(rng)
+        worst = max(worst, deviation(law, lead(law, un, ut, radii=(1e-3, 1.7e-3), axes=axes, swapped=bool(seed % 2))))
+    return worst
+
+
+def swapping(law):
+    """Difference that the order of the ids makes."""
+    un, ut = random_path(np.random.default_rng(1))
+    a, b = (forces(lead(law, un, ut, radii=(1e-3, 1.7e-3), swapped=swapped)) for swapped in (False, True))
+    return float(abs(a - b).max() / law.Rn)
+
+
+def turning(law, steps=1000):
+    """Difference that a rigid rotation of the pair by a radian makes, away from jumps of the force.
+
+    YADE takes the velocity of the middle of a step with the normal of its end, so that some of it is of its own making.
+    """
+    worst = 0.0
+    for spin in ((0.0, 0.0, 1.0), (1.0, 0.0, 0.0)):
+        for un, ut in [*programme(law, END_N, END_T, steps).values()][2:]:
+            ut = np.column_stack([0.6 * ut, 0.8 * ut])
+            still, turned = (forces(lead(law, un, ut, spin=np.array(spin) * turn / steps)) for turn in (0, 1))
+            difference = np.sort(abs(still - turned).max(axis=1))
+            worst = max(worst, float(difference[-3]) / law.Rn)
+    return worst
+
+
+def coulomb_afterwards(law):
+    """A broken bond under YADE alone: nothing is carried, and the force is that of a Coulomb contact."""
+    rng = np.random.default_rng(3)
+    un, ut = random_path(rng)
+    un, ut = np.concatenate([[0.0, 2 * END_N], un - 2e-6]), np.vstack([np.zeros((2, 2)), ut])
+    response = lead(law, un, ut, axes=random_axes(rng))
+    Fn, Ft = np.minimum(law.kn * response.un, 0.0), np.zeros(2)
+    worst, before = 0.0, response.ut[1]
+    for k in range(2, len(un)):
+        Ft = Ft + law.kt * (response.ut[k] - before)
+        before, limit = response.ut[k], law.mu * abs(Fn[k])
+        Ft = Ft * min(1.0, limit / (np.linalg.norm(Ft) or 1.0))
+        worst = max(worst, abs(response.Fn[k] - Fn[k]), abs(response.Ft[k] - Ft).max())
+    return {"deviation": float(worst / law.Rn), "carried": len(response.bonds.carried), "slides": int(np.sum(Fn < 0))}
+
+
+def work_until_gone(law):
+    """Energy booked, and the work until a bond is gone, in tension and in shear."""
+    exact = [0.5 * law.Rn**2 * (1 / law.kn + 1 / law.H), 0.5 * law.Rt**2 * (1 / law.kt + 1 / law.H)]
+    found = []
+    for kind in ("tension, unloading and reloading", "shear"):
+        response = lead(law, *programme(law, END_N, END_T, 2003)[kind])
+        crack, = response.bonds.cracks
+        found.append((crack.energy, crack.mode, response.bonds.energy_released - crack.energy))
+    return {"tension": found[0][0] / exact[0] - 1, "shear": found[1][0] / exact[1] - 1,
+            "modes": [found[0][1], found[1][1]], "unbooked": max(abs(rest) for *_, rest in found)}
+
+
+def flying_apart(law):
+    """A free pair driven apart, turning and shearing: energy that is in no book, over the energy booked."""
+    bonds = lead(law, np.zeros(2), np.zeros(2)).bonds
+    let_loose()
+    for body, (vel, spin) in zip(O.bodies, [((0.4, -0.2, 0.1), (30, -20, 80)), ((-0.3, 1.2, 0.2), (-40, 10, 60))]):
+        body.state.blockedDOFs = ""
+        body.state.mass, body.state.inertia = 5.0, (3e-6,) * 3
+        body.state.vel, body.state.angVel = vel, spin
+    O.dt = 1e-8
+    before = utils.kineticEnergy()
+    O.run(10000, True)
+    return {"residual": abs(before - utils.kineticEnergy() - bonds.elastic_energy() - bonds.energy_released)
+            / bonds.energy_released, "broken": len(bonds.cracks)}
+
+
+def strength_factor(law, factor=1.7):
+    """A bond of a scaled law answers a scaled path with scaled forces."""
+    un, ut = random_path(np.random.default_rng(5))
+    a, b = follow(law, un, ut), follow(law.scaled(factor), factor * un, factor * ut)
+    return float(abs(factor * a - b).max() / law.Rn)
+
+
+def resuming(law):
+    """Largest difference after a save and a restart half-way through softening; bit for bit is 0."""
+    un, ut = random_path(np.random.default_rng(8), legs=3)
+    un += np.linspace(0.0, 8e-6, len(un))
+
+    def half(resumed):
+        response = lead(law, 0.2 * un, 0.2 * ut)
+        bonds = response.bonds
+        state = bonds.state()
+        let_loose()
+        O.bodies[1].state.vel, O.bodies[1].state.angVel = Vector3(0.02, 0.05, 0.0), Vector3(3.0, 5.0, -8.0)
+        if resumed:
+            O.save(path)
+            O.reset()
+            O.load(path)
+            bonds = Bonds(pairs=np.array([[0, 1]]), law=law, clock=lambda: O.time)
+            bonds.restore(state)
+            engines.enlist([bonds])
+            bonds.connect()
+        rows = []
+        for _ in range(150):
+            O.step()
+            rows.append([*O.forces.f(1), *O.forces.t(0), bonds.energy_released])
+        return np.array(rows)
+
+    path = sys.argv[-1] + ".yade.gz"
+    whole, resumed = half(False), half(True)
+    os.remove(path)
+    return {"difference": float(abs(whole - resumed).max()), "largest": float(abs(whole).max())}
+
+
+def broken_on_purpose():
+    """Deviation on paths of shear with tension when a part of the engine is taken away: no test may pass then."""
+    def no_shear(self, n, geom, first, second):
+        return Vector3.Zero
+
+    def a_step_late(self):
+        for n, carried in list(self.carried.items()):
+            spent = carried.advance(carried.trial(), O.forces)
+            if spent is not None:
+                self._book(n, carried, spent)
+        tripped = [n for n, (_, phys) in self.intact.items() if not phys.isCohesive]
+        for n in [n for n in tripped if getattr(self, "seen", None) == n]:
+            self._trip(n, *self.intact.pop(n))
+        self.seen = tripped[0] if tripped else None
+
+    def no_friction(self):
+        hand_over(self)
+        self.phys.tanFrictionAngle = 0.0
+
+    hand_over, law = Carried.hand_over, LAWS["damage"]
+    patches = {"nothing carried": mock.patch.object(Carried, "advance", lambda self, ut, forces: None),
+               "shear forgotten": mock.patch.object(Bonds, "_shear_displacement", no_shear),
+               "a step late": mock.patch.object(Bonds, "act", a_step_late),
+               "no friction": mock.patch.object(Carried, "hand_over", no_friction)}
+    ut = np.linspace(0.0, 30e-6, 203)
+    found = {}
+    for name, patch in patches.items():
+        with patch:
+            found[name] = max(deviation(law, lead(law, un, ut)) for un in (0.7 * ut, -ut / 10))
+    return found
+
+
+checks = {
+    "programme": {name: programmes(law) for name, law in LAWS.items()},
+    "plane": {name: random_paths(law, True) for name, law in LAWS.items()},
+    "space": {name: random_paths(law, False) for name, law in LAWS.items()},
+    "swapping": {name: swapping(law) for name, law in LAWS.items()},
+    "turning": {name: turning(law) for name, law in LAWS.items()},
+    "turning in half the steps": {name: turning(law, 500) for name, law in LAWS.items()},
+    "coulomb": {name: coulomb_afterwards(LAWS[name]) for name in LINEAR},
+    "work": {name: work_until_gone(LAWS[name]) for name in ("damage", "elasto-plastic")},
+    "flying": {name: flying_apart(LAWS[name]) for name in ("brittle", "damage", "elasto-plastic")},
+    "scaled": {name: strength_factor(law) for name, law in LAWS.items()},
+    "resuming": {name: resuming(law) for name, law in LAWS.items()},
+    "broken on purpose": broken_on_purpose(),
+}
+with open(sys.argv[-1], "w") as file:
+    json.dump(checks, file, indent=1)

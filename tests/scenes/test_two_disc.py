@@ -1,0 +1,73 @@
+"""One bond between two particles: YADE's forces are those of the bond law, on every path that could be thought of."""
+import json
+
+import pytest
+
+from .conftest import ROOT, run_script
+
+BRITTLE_HALF_STEP = 5e-3
+"""A bond that goes in the step of its trip is booked with what it held the step before."""
+
+
+@pytest.fixture(scope="module")
+def checks(tmp_path_factory):
+    """All checks, made in one process of YADE."""
+    file = tmp_path_factory.mktemp("two_disc") / "checks.json"
+    done = run_script(ROOT / "tests/scenes/scripts/two_disc_checks.py", str(file))
+    assert done.code == 0, done.stderr
+    return json.loads(file.read_text())
+
+
+def test_programme_of_the_monograph_for_every_law(checks):
+    assert len(checks["programme"]) == 6
+    for kinds in checks["programme"].values():
+        assert len(kinds) == 6 and max(kinds.values()) < 1e-12
+
+
+def test_random_paths_in_the_plane(checks):
+    assert max(checks["plane"].values()) < 1e-12
+
+
+def test_random_paths_in_space_with_shear_in_two_directions(checks):
+    assert max(checks["space"].values()) < 1e-6
+
+
+def test_the_order_of_the_ids_changes_nothing(checks):
+    assert max(checks["swapping"].values()) < 1e-13
+
+
+def test_forces_turn_with_the_pair(checks):
+    """What a radian of rotation changes is YADE's own error, of the first order in the step."""
+    for law, difference in checks["turning"].items():
+        assert difference < 3e-3 and difference < 0.6 * checks["turning in half the steps"][law]
+
+
+def test_after_breakage_yade_alone_gives_a_coulomb_contact(checks):
+    for found in checks["coulomb"].values():
+        assert found["carried"] == 0 and found["slides"] > 100 and found["deviation"] < 1e-12
+
+
+def test_work_until_a_bond_is_gone_is_that_of_the_triangle(checks):
+    for found in checks["work"].values():
+        assert abs(found["tension"]) < 1e-6 and abs(found["shear"]) < 1e-6
+        assert found["modes"] == [1, 2] and found["unbooked"] == 0
+
+
+def test_energy_of_a_free_pair_that_flies_apart(checks):
+    for law, found in checks["flying"].items():
+        assert found["broken"] == 1
+        assert found["residual"] < (BRITTLE_HALF_STEP if law == "brittle" else 1e-3)
+
+
+def test_a_stronger_bond_is_the_same_bond_larger(checks):
+    assert max(checks["scaled"].values()) < 1e-12
+
+
+def test_a_resumed_bond_is_equal_bit_for_bit(checks):
+    for found in checks["resuming"].values():
+        assert found["difference"] == 0 and found["largest"] > 1e4
+
+
+def test_an_engine_broken_on_purpose_is_noticed(checks):
+    assert len(checks["broken on purpose"]) == 4
+    assert min(checks["broken on purpose"].values()) > 0.01
