@@ -71,3 +71,23 @@ def test_a_resumed_bond_is_equal_bit_for_bit(checks):
 def test_an_engine_broken_on_purpose_is_noticed(checks):
     assert len(checks["broken on purpose"]) == 4
     assert min(checks["broken on purpose"].values()) > 0.01
+
+
+def test_the_scene_leaves_a_figure_for_each_of_the_monograph(tmp_path):
+    script = ROOT / "yade_scripts/two_disc.py"
+    run = run_script(script, "--out", str(tmp_path / "out"), "--steps", "101", out=tmp_path / "out")
+    assert run.code == 0, run.stderr
+    figures = {file.stem for file in (tmp_path / "out/figures").glob("*.png")}
+    assert figures >= {f"figure_4_{number}" for number in range(11, 27)} and len(figures) == 32
+    assert (tmp_path / "out/report.html").stat().st_size > 1e5
+    results = {name: entry["value"] for name, entry in run.summary["results"].items()}
+    assert results["largest deviation"] < 1e-12
+    assert results["plastic, shear with tension: largest resultant"] == pytest.approx(1e5, rel=0.02)
+    assert results["plastic, shear with tension: largest Ft"] < 0.91e5
+    assert results["damage, shear with tension: largest Ft"] == pytest.approx(1e5, rel=0.02)
+    assert results["damage, shear with tension: largest Fn"] < 0.51e5
+
+
+def test_the_scene_refuses_what_it_cannot_use(tmp_path):
+    run = run_script(ROOT / "yade_scripts/two_disc.py", "--kn", "-1", "--out", str(tmp_path / "out"))
+    assert run.code == 2 and "kn = -1 N/m" in run.stderr and not (tmp_path / "out").exists()
