@@ -122,6 +122,8 @@ class Bonds(Engine):
     """
 
     name = "bonds"
+    tidy = 200
+    """Steps between two looks for broken bonds that are apart and can be let go."""
 
     def __init__(self, *, pairs, law, strength_factor=None, clock):
         super().__init__()
@@ -181,6 +183,8 @@ class Bonds(Engine):
             self._read_counters()
             for n in [n for n, (_, phys) in self.intact.items() if not phys.isCohesive]:
                 self._trip(n, *self.intact.pop(n))
+        if O.iter % self.tidy == 0:
+            self.let_go()
 
     def _trip(self, n, interaction, phys):
         """Carry a bond from here on, as our law answers where YADE's has given way."""
@@ -293,7 +297,7 @@ class RockFriction(Engine):
     """
 
     name = "rock_friction"
-    refresh = 100
+    refresh = 200
     """Visits between two searches for new contacts."""
 
     def __init__(self, *, bonds, motion):
@@ -312,14 +316,16 @@ class RockFriction(Engine):
         """Look for the contacts between rock particles that are no bonds and never were."""
         self.contacts = [i for i in O.interactions
                          if max(i.id1, i.id2) < self.particles and isinstance(i.phys, FrictPhys)]
-        self.until_search = self.refresh
+        self.since_search = 0
 
     def act(self):
         elapsed = self.elapsed()
-        self.until_search -= 1
-        if not self.until_search:
+        self.since_search += 1
+        if self.since_search == self.refresh:
             self.find_contacts()
         for interaction, phys in self.bonds.broken.values():
+            if phys.crackJointAperture > 0.0:
+                continue
             normal = phys.normalForce.norm()
             if normal > 0:
                 force = phys.shearForce

@@ -1,6 +1,7 @@
 """Time series of a run, and the watch over its health."""
 import math
 
+import numpy as np
 from yade import O, utils
 
 from . import Engine
@@ -30,7 +31,7 @@ class Recorder(Engine):
         self.rows.append([value for _, (value, _) in found])
 
     def state(self):
-        return {"header": self.header, "rows": self.rows}
+        return {"header": list(self.header), "rows": np.array(self.rows, float)}
 
     def restore(self, state):
         self.header, self.rows = [str(name) for name in state["header"]], state["rows"].tolist()
