@@ -5,9 +5,9 @@ from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
-from yade import InsertionSortCollider, O, utils
+from yade import O, utils
 
-from . import engines, scene, vtk
+from . import scene, vtk
 from .engines.bonds import Bonds, Crack, RockFriction
 from .engines.heat import Heat
 from .engines.motion import BackgroundDamping, Foresight
@@ -107,12 +107,14 @@ def parameters(**defaults):
     return [replace(p, default=defaults[p.name]) if p.name in defaults else p for p in PARAMETERS]
 
 
-class Cutting:
+class Cutting(scene.Scene):
     """A rigid tooth of particles cuts bonded rock: start-up, then cycles with the worn tooth put back (M 9.1).
 
     values: {name: value} of all PARAMETERS. The constructor does all that can fail on a
     parameter, without YADE's scene; `build` fills the scene.
     """
+
+    looking = {*scene.Scene.looking, "tool_contact"}
 
     def __init__(self, values):
         self.values = values
@@ -145,12 +147,7 @@ class Cutting:
         self.tool = Tool(vertices=vertices, radius_min=v.tool_radius_min, radius_max=v.tool_radius_max, seed=v.seed,
                          removal=v.removal, material=self.tool_material)
         self._choose_time_step(v)
-        bonds = len(self.rock.pairs)
-        # Chunks between canonical points depend on the scene alone, so that every run of it passes the same points.
-        self.chunk = int(min(2000, max(100, 12_000_000 // bonds)))
-        steps = {"start-up": v.start_up, **{f"cycle {n + 1}": v.cycle_time for n in range(v.cycles)}}
-        self.stages = [(name, max(1, round(seconds / self.time_step))) for name, seconds in steps.items()]
-        self.stage, self.clock = 0, 0.0
+        self._plan({"start-up": v.start_up, **{f"cycle {n + 1}": v.cycle_time for n in range(v.cycles)}})
         self.book = {"kinetic": 0.0, "elastic": 0.0, "contact_elastic": 0.0}
         self.cracks_of_past_cycles = []
 
@@ -204,19 +201,16 @@ class Cutting:
         """Fill YADE's scene: bodies, bonds, engines; the tool in front of the rock."""
         O.reset()
         v, rock = self.v, self.rock
-        scene.put_materials(mu=v.mu, tool_mu=v.tool_mu, contact_damping=v.contact_damping)
+        scene.put_rock_materials(mu=v.mu)
+        scene.put_steel(mu=v.tool_mu, contact_damping=v.contact_damping)
         scene.put_rock(rock)
-        scene.put_loop(kn=v.kn, kt=v.kt, mu=v.mu, tool_kn=v.tool_kn, tool_kt=v.tool_kt, tool_mu=v.tool_mu)
+        scene.put_loop(kn=v.kn, kt=v.kt, mu=v.mu, tool=(v.tool_kn, v.tool_kt, v.tool_mu))
         self._make_engines()
         scene.make_bonds(rock, self.bonds)
         self.bodies.offset = np.array([-v.approach, v.height - v.depth_of_cut])
         self.bodies.offset[0] -= self.tool.foremost(below=v.depth_of_cut + 2 * v.radius_max)
         self.bodies.add(sorted(self.tool.erosion.skin))
-        O.dt = self.time_step
-        before, after = self._runners()
-        O.engines = O.engines[:-1] + before + O.engines[-1:] + after
-        self._connect()
-        self.first_iteration = O.iter
+        self._hang_in()
         if self.heat:
             self.heat.begin()
         self.base = self._stored_energy()
@@ -237,9 +231,8 @@ class Cutting:
         self.recorder = Recorder([self._log, self.wear.log, self.bonds.log] + ([self.heat.log] if self.heat else []))
         kick = 0.5 * float(rock.masses.max()) * v.velocity**2
         self.watch = Watch(work=lambda: self.contact.work_done, floor=50 * kick)
-        self.live = [e for e in (self.bonds, self.contact, self.rock_friction, self.wear, self.heat, self.damping,
-                                 self.recorder, self.watch) if e]
-        engines.enlist(self.live)
+        self._enlist(self.bonds, self.contact, self.rock_friction, self.wear, self.heat, self.damping, self.recorder,
+                     self.watch)
 
     def _heat(self):
         v, rock, tool = self.v, self.rock, self.tool
@@ -256,21 +249,15 @@ class Cutting:
                     contact_conductance=v.contact_conductance, convection=v.convection, ambient=v.ambient_temperature,
                     rock_conductance=rock_share, surface_period=v.surface_period)
 
-    def _runners(self):
-        """Runners before and after the integrator: what looks at this step's forces, and what changes the scene."""
+    def _periods(self):
+        """{engine: steps between visits}."""
         v, dt = self.v, self.time_step
-        periods = {"bonds": 1, "tool_contact": v.sampling_period, "rock_friction": v.rock_sampling_period,
-                   "wear": v.wear_period, "heat": max(1, round(v.heat_period / dt)),
-                   "background_damping": v.damping_period, "recorder": max(1, round(v.record_period / dt)), "watch": 200}
-        looking = {"bonds", "tool_contact", "rock_friction"}
-        live = [engine.name for engine in self.live]
-        return (engines.runners({name: periods[name] for name in live if name in looking}),
-                engines.runners({name: periods[name] for name in live if name not in looking}))
+        return {"bonds": 1, "tool_contact": v.sampling_period, "rock_friction": v.rock_sampling_period,
+                "wear": v.wear_period, "heat": max(1, round(v.heat_period / dt)),
+                "background_damping": v.damping_period, "recorder": max(1, round(v.record_period / dt)), "watch": 200}
 
     def _connect(self):
-        for engine in self.live:
-            engine.last_iteration = O.iter - 1
-            engine.connect()
+        super()._connect()
         self.bodies.connect()
 
     def _tool_temperature(self):
@@ -284,46 +271,8 @@ class Cutting:
 
     # ---- stages
 
-    @property
-    def step(self):
-        """Steps of the present stage that are done."""
-        return O.iter - self.first_iteration
-
-    @property
-    def time(self):
-        """Simulated seconds over all stages."""
-        return self.clock + self.step * self.time_step
-
-    @property
-    def finished(self):
-        """True after the last stage."""
-        return self.stage >= len(self.stages)
-
-    @property
-    def stage_done(self):
-        """True when the present stage has run all its steps."""
-        return self.step >= self.stages[self.stage][1]
-
-    def run_chunk(self):
-        """Run to the next canonical point. Raises what an engine raised, RunEnded among it."""
-        O.run(min(self.chunk, self.stages[self.stage][1] - self.step), True)
-        if engines.failures:
-            raise engines.failures.pop()
-        self.canonical()
-
     def canonical(self):
-        """Bring YADE into the one state that a saved and loaded scene has too: no half-found contacts, bounds fresh.
-
-        Without it a loaded scene finds contacts in another order, sums forces in another order, and differs in the
-        last digit at first and in everything soon.
-        """
-        self.bonds.let_go()
-        self.rock_friction.find_contacts()
-        O.interactions.eraseNonReal()
-        collider = engines.yade_engine(InsertionSortCollider)
-        collider.doSort = True
-        # Asked for, not awaited: until its next visit of its own the scene would have no half-found contacts at all.
-        collider()
+        super().canonical()
         self.contact.look_around()
 
     def end_stage(self, folder):
@@ -334,8 +283,7 @@ class Cutting:
         stored = self._stored_energy()
         for name, value in stored.items():
             self.book[name] += value - self.base[name]
-        self.clock, self.first_iteration = self.time, O.iter
-        self.stage += 1
+        super().end_stage(folder)
         if self.stage == 1:
             self.canonical()
             O.save(str(folder / "start_up.yade.gz"))
@@ -369,43 +317,34 @@ class Cutting:
     # ---- what a checkpoint holds
 
     def state(self):
-        """All of ours that a restart needs, beside YADE's scene."""
-        state = {"stage": self.stage, "first_iteration": self.first_iteration, "clock": self.clock, "book": self.book,
-                 "base": self.base, "bodies": self.bodies.state(), "start": getattr(self, "start", {}),
-                 "cracks": np.array(self.cracks_of_past_cycles, float).reshape(-1, len(Crack._fields)),
-                 "engines": {engine.name: engine.state() for engine in self.live},
-                 "last_iteration": {engine.name: engine.last_iteration for engine in self.live}}
-        return state
+        return {**super().state(), "book": self.book, "base": self.base, "bodies": self.bodies.state(),
+                "cracks": np.array(self.cracks_of_past_cycles, float).reshape(-1, len(Crack._fields)),
+                "start": getattr(self, "start", {})}
 
     def save(self, directory, folder):
-        """Write YADE's scenes into `directory` of a checkpoint."""
-        O.save(str(directory / "scene.yade.gz"))
+        super().save(directory, folder)
         if self.stage > 0:
             shutil.copy(folder / "start_up.yade.gz", directory)
 
     def restore(self, state, directory, folder):
-        """Go back to a checkpoint: `state`, and YADE's scenes in `directory`."""
         if (directory / "start_up.yade.gz").exists():
             shutil.copy(directory / "start_up.yade.gz", folder)
-        O.load(str(directory / "scene.yade.gz"))
-        self._make_engines()
-        self.stage, self.first_iteration, self.clock = int(state["stage"]), int(state["first_iteration"]), float(state["clock"])
+        super().restore(state, directory, folder)
         self.book = {name: float(value) for name, value in state["book"].items()}
         self.base = {name: float(value) for name, value in state["base"].items()}
         self.start = state["start"] if "start" in state else {}
         self.cracks_of_past_cycles = [Crack(*row) for row in state["cracks"].tolist()]
+
+    def _restore_engines(self, state):
         self.bodies.restore(state["bodies"])
-        for engine in self.live:
-            engine.restore(state["engines"].get(engine.name, {}))
-        self._connect()
-        for engine in self.live:
-            engine.last_iteration = int(state["last_iteration"][engine.name])
+        super()._restore_engines(state)
 
     # ---- books
 
     def _stored_energy(self):
-        return {"kinetic": utils.kineticEnergy(), "elastic": self.bonds.elastic_energy(),
-                "contact_elastic": self.contact.elastic_energy() + self.rock_friction.elastic_energy()}
+        stored = super()._stored_energy()
+        stored["contact_elastic"] += self.contact.elastic_energy()
+        return stored
 
     def energy_audit(self):
         """J per metre of thickness: the tool's work, where it went, and what the account misses."""
@@ -467,11 +406,8 @@ class Cutting:
         vtk.write(folder / f"rock.{number:04d}.vtk", shot["rock_positions"], fields)
         vtk.write(folder / f"tool.{number:04d}.vtk", tool.positions[alive] + shot["tool_offset"], worn)
 
-    def tables(self):
-        """{file: (header, rows)} of further tables: every bond that broke, over all cycles, in order of time."""
-        units = "s m m m - - - - J - -".split()
-        header = [f"{name} [{unit}]" for name, unit in zip(Crack._fields, units)]
-        return {"cracks.csv": (header, sorted(self.cracks_of_past_cycles + self.bonds.cracks))}
+    def cracks(self):
+        return self.cracks_of_past_cycles + self.bonds.cracks
 
     def progress(self):
         """A few words on how it stands."""
@@ -483,9 +419,7 @@ class Cutting:
 
     def results(self):
         """{name: (value, unit)} of the run."""
-        v, header = self.v, self.recorder.header
-        rows = np.array(self.recorder.rows, float).reshape(-1, max(1, len(header)))
-        columns = {name.split(" [")[0]: rows[:, i] for i, name in enumerate(header)}
+        v, columns = self.v, self.recorder.columns()
         cutting = columns.get("cutting_force", np.zeros(1))
         travel = self.time * v.velocity
         found = {"simulated_time": (self.time, "s"), "time_step": (self.time_step, "s"),

@@ -1,4 +1,4 @@
-"""Building blocks of scenes: what is put into YADE, and how."""
+"""Building blocks of scenes: what is put into YADE, and how; and what all scenes do alike on their way."""
 import math
 
 import numpy as np
@@ -9,6 +9,7 @@ from yade import (Bo1_Sphere_Aabb, ForceResetter, FrictMat, FrictViscoMat, Ig2_S
                   Law2_ScGeom_JCFpmPhys_JointedCohesiveFrictionalPM, MatchMaker, NewtonIntegrator, O, utils)
 
 from . import engines
+from .engines.bonds import Crack
 
 ROCK_MASK, TOOL_MASK = 1, 3
 """Bodies meet where masks share a bit; bit 2 is avoided within the tool."""
@@ -19,8 +20,8 @@ def exactly(value):
     return MatchMaker(algo="val", val=value)
 
 
-def put_materials(*, mu, tool_mu, contact_damping):
-    """The three materials of a cut: rock while it is bonded, rock afterwards, and the tool.
+def put_rock_materials(*, mu):
+    """Rock while it is bonded, and rock afterwards.
 
     Rock changes its material after bonding: a bond stays the bond it is, and every later contact is a plain Coulomb
     contact. Stiffness is given by the contact laws, not by these.
@@ -28,7 +29,11 @@ def put_materials(*, mu, tool_mu, contact_damping):
     O.materials.append(JCFpmMat(type=1, young=1e9, poisson=1.0, frictionAngle=0.0, density=1.0, tensileStrength=1.0,
                                 cohesion=1.0, label="bonding rock"))
     O.materials.append(FrictMat(young=1e9, poisson=0.3, frictionAngle=math.atan(mu), density=1.0, label="loose rock"))
-    O.materials.append(FrictViscoMat(young=1e9, poisson=0.3, frictionAngle=math.atan(tool_mu), density=1.0,
+
+
+def put_steel(*, mu, contact_damping):
+    """The tool's material, its friction and dashpot."""
+    O.materials.append(FrictViscoMat(young=1e9, poisson=0.3, frictionAngle=math.atan(mu), density=1.0,
                                      betan=contact_damping, label="steel"))
 
 
@@ -42,21 +47,25 @@ def put_rock(rock):
         O.bodies.append(body)
 
 
-def put_loop(*, kn, kt, mu, tool_kn, tool_kt, tool_mu):
-    """YADE's own loop: bonds, rock on rock, tool on rock (M 4.5), explicit integration without numerical damping."""
+def put_loop(*, kn, kt, mu, tool=None, damping=0.0):
+    """YADE's own loop: bonds, rock on rock, tool on rock (M 4.5), explicit integration.
+
+    tool: (kn, kt, mu) of its contacts, None without a tool; damping: non-viscous (Cundall's), a fraction of each force.
+    """
+    parameters = [Ip2_JCFpmMat_JCFpmMat_JCFpmPhys(cohesiveTresholdIteration=1),
+                  Ip2_FrictMat_FrictMat_FrictPhys(kn=exactly(kn), ks=exactly(kt), frictAngle=exactly(math.atan(mu)))]
+    laws = [Law2_ScGeom_JCFpmPhys_JointedCohesiveFrictionalPM(neverErase=True),
+            Law2_ScGeom_FrictPhys_CundallStrack(traceEnergy=True)]
+    if tool:
+        tool_kn, tool_kt, tool_mu = tool
+        parameters.append(Ip2_FrictMat_FrictViscoMat_FrictViscoPhys(
+            kn=exactly(tool_kn), kRatio=exactly(tool_kt / tool_kn), frictAngle=exactly(math.atan(tool_mu))))
+        laws.append(Law2_ScGeom_FrictViscoPhys_CundallStrackVisco(traceEnergy=True))
     O.engines = [
         ForceResetter(),
         InsertionSortCollider([Bo1_Sphere_Aabb()], avoidSelfInteractionMask=2),
-        InteractionLoop(
-            [Ig2_Sphere_Sphere_ScGeom()],
-            [Ip2_JCFpmMat_JCFpmMat_JCFpmPhys(cohesiveTresholdIteration=1),
-             Ip2_FrictMat_FrictMat_FrictPhys(kn=exactly(kn), ks=exactly(kt), frictAngle=exactly(math.atan(mu))),
-             Ip2_FrictMat_FrictViscoMat_FrictViscoPhys(kn=exactly(tool_kn), kRatio=exactly(tool_kt / tool_kn),
-                                                       frictAngle=exactly(math.atan(tool_mu)))],
-            [Law2_ScGeom_JCFpmPhys_JointedCohesiveFrictionalPM(neverErase=True),
-             Law2_ScGeom_FrictPhys_CundallStrack(traceEnergy=True),
-             Law2_ScGeom_FrictViscoPhys_CundallStrackVisco(traceEnergy=True)]),
-        NewtonIntegrator(damping=0.0)]
+        InteractionLoop([Ig2_Sphere_Sphere_ScGeom()], parameters, laws),
+        NewtonIntegrator(damping=damping)]
 
 
 def make_bonds(rock, bonds):
@@ -131,3 +140,136 @@ class ToolBodies:
         self.body_of = {int(i): int(body) for i, body in state["bodies"]}
         self.ids = list(self.body_of.values())
         self.offset = state["offset"].copy()
+
+
+class Scene:
+    """What rockwear.run leads: bonded rock with engines, in stages of steps, over canonical points, into checkpoints.
+
+    A scene sets `rock` (a Specimen) and `time_step` (s), and plans its stages. `build` fills YADE's scene;
+    `_make_engines` makes `bonds`, `rock_friction`, `recorder` and lists all engines in `live`, in the order of their
+    visits; `_periods` says how often each is visited. `model`, `snapshot`, `progress`, `results` and `audits` say what a
+    run's folder shows.
+    """
+
+    looking = {"bonds", "rock_friction"}
+    """Engines that look at the forces of this step and come before the integrator; the others come after it."""
+
+    def _plan(self, stages):
+        """stages: {name: s}."""
+        # Chunks between canonical points depend on the scene alone, so that every run of it passes the same points.
+        self.chunk = int(min(2000, max(100, 12_000_000 // len(self.rock.pairs))))
+        self.stages = [(name, max(1, round(seconds / self.time_step))) for name, seconds in stages.items()]
+        self.stage, self.clock = 0, 0.0
+
+    def _enlist(self, *live):
+        """Make these engines the scene's own; None stands for one that it does not need."""
+        self.live = [engine for engine in live if engine]
+        engines.enlist(self.live)
+
+    def _hang_in(self):
+        """Hang the engines into YADE's loop, from now on with the scene's time step."""
+        O.dt = self.time_step
+        periods = self._periods()
+        names = [engine.name for engine in self.live]
+        before = engines.runners({name: periods[name] for name in names if name in self.looking})
+        after = engines.runners({name: periods[name] for name in names if name not in self.looking})
+        O.engines = O.engines[:-1] + before + O.engines[-1:] + after
+        self._connect()
+        self.first_iteration = O.iter
+
+    def _connect(self):
+        for engine in self.live:
+            engine.last_iteration = O.iter - 1
+            engine.connect()
+
+    # ---- stages
+
+    @property
+    def step(self):
+        """Steps of the present stage that are done."""
+        return O.iter - self.first_iteration
+
+    @property
+    def time(self):
+        """Simulated seconds over all stages."""
+        return self.clock + self.step * self.time_step
+
+    @property
+    def finished(self):
+        """True after the last stage."""
+        return self.stage >= len(self.stages)
+
+    @property
+    def stage_done(self):
+        """True when the present stage has run all its steps."""
+        return self.step >= self.stages[self.stage][1]
+
+    def run_chunk(self):
+        """Run to the next canonical point. Raises what an engine raised, RunEnded among it."""
+        O.run(min(self.chunk, self.stages[self.stage][1] - self.step), True)
+        if engines.failures:
+            raise engines.failures.pop()
+        self.canonical()
+
+    def canonical(self):
+        """Bring YADE into the one state that a saved and loaded scene has too: no half-found contacts, bounds fresh.
+
+        Without it a loaded scene finds contacts in another order, sums forces in another order, and differs in the
+        last digit at first and in everything soon.
+        """
+        self.bonds.let_go()
+        self.rock_friction.find_contacts()
+        O.interactions.eraseNonReal()
+        collider = engines.yade_engine(InsertionSortCollider)
+        collider.doSort = True
+        # Asked for, not awaited: until its next visit of its own the scene would have no half-found contacts at all.
+        collider()
+
+    def end_stage(self, folder):
+        """Go on to the next stage; `folder` is the run's."""
+        self.clock, self.first_iteration = self.time, O.iter
+        self.stage += 1
+
+    # ---- what a checkpoint holds
+
+    def state(self):
+        """All of ours that a restart needs, beside YADE's scene."""
+        return {"stage": self.stage, "first_iteration": self.first_iteration, "clock": self.clock,
+                "engines": {engine.name: engine.state() for engine in self.live},
+                "last_iteration": {engine.name: engine.last_iteration for engine in self.live}}
+
+    def save(self, directory, folder):
+        """Write YADE's scene into `directory` of a checkpoint of the run in `folder`."""
+        O.save(str(directory / "scene.yade.gz"))
+
+    def restore(self, state, directory, folder):
+        """Go back to a checkpoint: `state`, and YADE's scene in `directory`."""
+        O.load(str(directory / "scene.yade.gz"))
+        self._make_engines()
+        self.stage, self.first_iteration, self.clock = int(state["stage"]), int(state["first_iteration"]), float(state["clock"])
+        self._restore_engines(state)
+        self._connect()
+        for engine in self.live:
+            engine.last_iteration = int(state["last_iteration"][engine.name])
+
+    def _restore_engines(self, state):
+        for engine in self.live:
+            engine.restore(state["engines"].get(engine.name, {}))
+
+    # ---- books
+
+    def _stored_energy(self):
+        """J per metre of thickness, of the rock."""
+        return {"kinetic": utils.kineticEnergy(), "elastic": self.bonds.elastic_energy(),
+                "contact_elastic": self.rock_friction.elastic_energy()}
+
+    # ---- what a run's folder shows
+
+    def cracks(self):
+        """Every bond that broke, as engines.bonds.Crack."""
+        return self.bonds.cracks
+
+    def tables(self):
+        """{file: (header, rows)} of further tables: the cracks in order of time."""
+        units = "s m m m - - - - J - -".split()
+        return {"cracks.csv": ([f"{name} [{unit}]" for name, unit in zip(Crack._fields, units)], sorted(self.cracks()))}

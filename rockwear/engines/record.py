@@ -30,6 +30,11 @@ class Recorder(Engine):
         self.header = [f"{name} [{unit}]" for name, (_, unit) in found]
         self.rows.append([value for _, (value, _) in found])
 
+    def columns(self):
+        """{name: (rows,) values}."""
+        rows = np.array(self.rows, float).reshape(-1, max(1, len(self.header)))
+        return {name.split(" [")[0]: rows[:, i] for i, name in enumerate(self.header)}
+
     def state(self):
         return {"header": list(self.header), "rows": np.array(self.rows, float)}
 
