@@ -8,7 +8,7 @@ import numpy as np
 from yade import O, utils
 
 from . import scene, vtk
-from .engines.bonds import Bonds, Crack, RockFriction
+from .engines.bonds import Bonds, Crack, LettingGo, RockFriction
 from .engines.heat import Heat
 from .engines.motion import BackgroundDamping, Foresight
 from .engines.record import Recorder, RunEnded, Watch
@@ -231,8 +231,8 @@ class Cutting(scene.Scene):
         self.recorder = Recorder([self._log, self.wear.log, self.bonds.log] + ([self.heat.log] if self.heat else []))
         kick = 0.5 * float(rock.masses.max()) * v.velocity**2
         self.watch = Watch(work=lambda: self.contact.work_done, floor=50 * kick)
-        self._enlist(self.bonds, self.contact, self.rock_friction, self.wear, self.heat, self.damping, self.recorder,
-                     self.watch)
+        self._enlist(self.bonds, self.contact, self.rock_friction, LettingGo(self.bonds), self.wear, self.heat,
+                     self.damping, self.recorder, self.watch)
 
     def _heat(self):
         v, rock, tool = self.v, self.rock, self.tool
@@ -254,7 +254,8 @@ class Cutting(scene.Scene):
         v, dt = self.v, self.time_step
         return {"bonds": 1, "tool_contact": v.sampling_period, "rock_friction": v.rock_sampling_period,
                 "wear": v.wear_period, "heat": max(1, round(v.heat_period / dt)),
-                "background_damping": v.damping_period, "recorder": max(1, round(v.record_period / dt)), "watch": 200}
+                "letting_go": 200, "background_damping": v.damping_period, "watch": 200,
+                "recorder": max(1, round(v.record_period / dt))}
 
     def _connect(self):
         super()._connect()

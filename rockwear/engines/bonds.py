@@ -122,9 +122,6 @@ class Bonds(Engine):
     """
 
     name = "bonds"
-    tidy = 200
-    """Steps between two looks for broken bonds that are apart and can be let go."""
-
     def __init__(self, *, pairs, law, strength_factor=None, clock):
         super().__init__()
         self.pairs = np.asarray(pairs)
@@ -183,8 +180,6 @@ class Bonds(Engine):
             self._read_counters()
             for n in [n for n, (_, phys) in self.intact.items() if not phys.isCohesive]:
                 self._trip(n, *self.intact.pop(n))
-        if O.iter % self.tidy == 0:
-            self.let_go()
 
     def _trip(self, n, interaction, phys):
         """Carry a bond from here on, as our law answers where YADE's has given way."""
@@ -285,6 +280,19 @@ class Bonds(Engine):
     def log(self):
         modes = [crack.mode for crack in self.cracks]
         return {"tensile_cracks": (modes.count(1), "-"), "shear_cracks": (modes.count(2), "-")}
+
+
+class LettingGo(Engine):
+    """Lets broken bonds go whose particles are apart, so that nobody looks at them any more."""
+
+    name = "letting_go"
+
+    def __init__(self, bonds):
+        super().__init__()
+        self.bonds = bonds
+
+    def act(self):
+        self.bonds.let_go()
 
 
 class RockFriction(Engine):
