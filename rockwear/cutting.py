@@ -268,6 +268,8 @@ class Cutting(scene.Scene):
         if self.heat:
             self.heat.remove(indices)
         if not self.bodies.body_of:
+            # A simulation that blows up may wear the tool away before its watch comes by.
+            self.watch.act()
             raise RunEnded(f"the tool is worn away at t = {self.time:g} s", True)
 
     # ---- stages

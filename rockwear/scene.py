@@ -222,8 +222,9 @@ class Scene:
         O.interactions.eraseNonReal()
         collider = engines.yade_engine(InsertionSortCollider)
         collider.doSort = True
-        # Asked for, not awaited: until its next visit of its own the scene would have no half-found contacts at all.
-        collider()
+        # A fastest velocity of zero makes the collider run in the very next step, as it does in a loaded scene. Left
+        # to itself it would wait until some particle leaves its bounds, and contacts would be missed meanwhile.
+        engines.yade_engine(NewtonIntegrator).maxVelocitySq = 0.0
 
     def end_stage(self, folder):
         """Go on to the next stage; `folder` is the run's."""

@@ -11,7 +11,7 @@ from rockwear import cutting, run  # noqa: E402
 class Unstable(cutting.Cutting):
     def _choose_time_step(self, v):
         super()._choose_time_step(v)
-        self.time_step = 1.2 * self.bonded_step
+        self.time_step = 3 * self.bonded_step
 
 
 run.main("unstable", cutting.PARAMETERS, Unstable)
