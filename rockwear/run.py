@@ -161,8 +161,10 @@ class Run:
                 self._snapshot()
             before = self.scene.step
             begin = time.time()
-            self.scene.run_chunk()
-            self.loop_time += time.time() - begin
+            try:
+                self.scene.run_chunk()
+            finally:
+                self.loop_time += time.time() - begin
             self.steps_here += self.scene.step - before
             if self.scene.stage_done:
                 self._snapshot()

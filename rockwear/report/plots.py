@@ -89,10 +89,11 @@ def history(run):
 
 
 def energy_bars(run):
-    """Where the tool's work went, in per cent of it; what the account misses stands apart in red."""
+    """Where the work put in went, in per cent of it; what the account misses stands apart in red."""
     book = run.summary.get("audits", {}).get("energy", {})
-    work = book.get("tool_work", 0.0)
-    items = [(name, value) for name, value in book.items() if name not in ("unit", "tool_work", "residual")]
+    source = next((name for name in book if name.endswith("_work")), None)
+    work = book.get(source, 0.0)
+    items = [(name, value) for name, value in book.items() if name not in ("unit", source, "residual")]
     if not work or not np.isfinite(work) or not items:
         return None
     items = sorted(items, key=lambda item: np.nan_to_num(item[1])) + [("residual", book.get("residual", np.nan))]
@@ -103,7 +104,7 @@ def energy_bars(run):
         axes.text(max(0, np.nan_to_num(share[place])), place, va="center",
                   s=f"  {percent(value, work)}   {number(value)} {book['unit']}")
     axes.set_yticks(range(len(items)), [words(name) for name, _ in items])
-    axes.set(xlabel=f"% of the tool's work, {number(work)} {book['unit']}",
+    axes.set(xlabel=f"% of the {words(source)}, {number(work)} {book['unit']}",
              xlim=(min(0, 1.1 * np.nanmin(share)), max(1, 1.35 * np.nanmax(share))))
     return figure
 
@@ -125,6 +126,6 @@ def book_table(run, name):
 def books(run):
     """Section of the books: energy as bars, the others as tables."""
     others = [name for name in run.summary.get("audits", {}) if name != "energy"]
-    return Section("Books", "Where the tool's work went, and the books of mass and heat. Heat counts from 0 K: "
-                   "a particle that is removed takes all it holds with it.",
+    heat = " Heat counts from 0 K: a particle that is removed takes all it holds with it." if "heat" in others else ""
+    return Section("Books", "Where the work went" + (", and the other books." if others else ".") + heat,
                    [save(run, "energy", energy_bars(run)), beside(*(book_table(run, name) for name in others))])

@@ -56,9 +56,14 @@ test_tooth.__test__ = False
 
 
 def interrupt(out, number, after, **values):
-    """Start the miniature test tooth, and send it a signal once it has simulated the step `after`. -> as finish."""
-    process = start(ROOT / "yade_scripts/test_tooth.py", [*arguments({**SMALL, **values}), "--out", str(out),
-                                                          *(["--resume"] if (out / "checkpoint").exists() else [])])
+    """Start the miniature test tooth, and send it a signal once it has written `after` checkpoints. -> as finish."""
+    return interrupt_script(ROOT / "yade_scripts/test_tooth.py", out, number, after, **{**SMALL, **values})
+
+
+def interrupt_script(script, out, number, after, **values):
+    """Start a script, from its checkpoint if there is one, and send it a signal as `interrupt` does."""
+    process = start(script, [*arguments(values), "--out", str(out),
+                             *(["--resume"] if (out / "checkpoint").exists() else [])])
     deadline = time.time() + 120
     while time.time() < deadline and process.poll() is None and _progress(out) < after:
         time.sleep(0.02)

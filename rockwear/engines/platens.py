@@ -1,0 +1,70 @@
+"""Loading of a specimen between its two ends: the force of the platens, and the end of the test."""
+import math
+
+from yade import O
+
+from . import Engine
+from .record import RunEnded
+
+
+class Platens(Engine):
+    """Two sets of bodies led along x, the right ones with `velocity` (m/s), the left ones with its opposite.
+
+    left, right: ids. Pull is the force (N) that the platens exert outwards on the specimen, the mean of both ends;
+    positive in tension. To be visited after the integrator, when the forces of the step are complete.
+    """
+
+    name = "platens"
+
+    def __init__(self, *, left, right, velocity):
+        super().__init__()
+        self.left, self.right, self.velocity = left, right, velocity
+        self.work = self.impulse = self.unbalanced = self.time = 0.0
+
+    def act(self):
+        elapsed, force = self.elapsed(), O.forces.f
+        left, right = (math.fsum(force(i)[0] for i in ids) for ids in (self.left, self.right))
+        pull = 0.5 * (left - right)
+        self.work += 2 * self.velocity * pull * elapsed
+        self.impulse += pull * elapsed
+        self.unbalanced += (left + right) * elapsed
+        self.time += elapsed
+
+    def take_mean(self):
+        """(pull, difference of the two ends), N, each the mean since the last call."""
+        means = (self.impulse / self.time, self.unbalanced / self.time) if self.time else (0.0, 0.0)
+        self.impulse = self.unbalanced = self.time = 0.0
+        return means
+
+    def state(self):
+        return {"work": self.work, "impulse": self.impulse, "unbalanced": self.unbalanced, "time": self.time}
+
+    def restore(self, state):
+        for name, value in state.items():
+            setattr(self, name, float(value))
+
+
+class Failure(Engine):
+    """Ends the run when, with bonds broken, the stress has fallen to a part `drop` of its peak.
+
+    stress: a function giving it (Pa); broken: a function telling whether any bond is broken.
+    """
+
+    name = "failure"
+
+    def __init__(self, *, stress, broken, drop):
+        super().__init__()
+        self.stress, self.broken, self.drop = stress, broken, drop
+        self.peak = 0.0
+
+    def act(self):
+        stress = self.stress()
+        self.peak = max(self.peak, stress)
+        if stress < self.drop * self.peak and self.broken():
+            raise RunEnded(f"failed at {self.peak / 1e6:.4g} MPa", True)
+
+    def state(self):
+        return {"peak": self.peak}
+
+    def restore(self, state):
+        self.peak = float(state["peak"])

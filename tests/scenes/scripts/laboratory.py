@@ -1,0 +1,63 @@
+"""The laboratory on specimens that have exact answers: a triangular lattice, and a chain of two discs.
+
+    yade -n -x laboratory.py --specimen lattice|chain [--name value ...]
+"""
+import math
+import os
+import sys
+
+ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(sys.argv[0])))))
+sys.path.insert(0, ROOT)
+
+import numpy as np  # noqa: E402
+
+from calibration.laboratory import PARAMETERS, UniaxialTest  # noqa: E402
+from rockwear import run  # noqa: E402
+from rockwear.kernels.packing import contacts  # noqa: E402
+from rockwear.parameters import Parameter, choice  # noqa: E402
+from rockwear.rock import Specimen  # noqa: E402
+
+ROWS, COLUMNS, RADIUS = 7, 36, 1e-3
+
+
+class Arranged(Specimen):
+    """Equal discs at given places, touching ones bonded. section: m, over which a force becomes a stress."""
+
+    def __init__(self, *, positions, section, density):
+        self.positions, self.count = positions, len(positions)
+        self.radii, self.scale = np.full(self.count, RADIUS), np.ones(self.count)
+        self.width, self.height, self.porosity = np.ptp(positions[:, 0]) + 2 * RADIUS, section, 0.0
+        self.pairs = contacts(positions, self.radii, 1e-6 * RADIUS)
+        self.strength_factor = np.ones(len(self.pairs))
+        self.masses = density * np.pi * self.radii**2
+        self.inertias = 0.5 * self.masses * self.radii**2
+        self.supported = np.zeros(self.count, bool)
+
+
+def lattice(v):
+    """Rows along x. Under uniaxial stress all of it strains alike, up to its free edges: a row carries kn D a strain,
+    a gap between rows what is left of E sqrt(3)/2 D. With a gap less than rows, that is the section of N - 1 rows and
+    of kn D/E for the last."""
+    spacing, rise = 2 * RADIUS, math.sqrt(3) * RADIUS
+    places = [(RADIUS + spacing * k + (row % 2) * RADIUS, RADIUS + rise * row)
+              for row in range(ROWS) for k in range(COLUMNS)]
+    modulus = 2 * math.sqrt(3) * v.kn * (v.kn + v.kt) / (3 * v.kn + v.kt)
+    section = (ROWS - 1) * rise + v.kn * spacing / modulus
+    return Arranged(positions=np.array(places), section=section, density=v.rock_density)
+
+
+def chain(v):
+    """Two discs in a row, both led."""
+    places = np.array([[RADIUS, RADIUS], [3 * RADIUS, RADIUS]])
+    return Arranged(positions=places, section=2 * RADIUS, density=v.rock_density)
+
+
+class Exact(UniaxialTest):
+    """The test of a specimen that the parameter `specimen` names."""
+
+    def _specimen(self):
+        return {"lattice": lattice, "chain": chain}[self.v.specimen](self.v)
+
+
+SPECIMEN = Parameter("specimen", "lattice", "", choice("lattice", "chain"), "what is tested")
+run.main("exact", [*PARAMETERS, SPECIMEN], Exact)

@@ -1,0 +1,111 @@
+"""The virtual laboratory: exact moduli of a lattice, failure of a small specimen, resuming, bad input."""
+import math
+
+import pytest
+
+from .conftest import ROOT, SIGNALS, arguments, history, interrupt_script, run_script
+
+SCRIPT = ROOT / "yade_scripts/uniaxial.py"
+EXACT = ROOT / "tests/scenes/scripts/laboratory.py"
+SMALL = dict(width=0.04, height=0.03, radius_min=1e-3, radius_max=1.5e-3, kt=4e9, Rt=0.1e6, report="false")
+"""Some 300 discs of P's sandstone."""
+CHAIN = dict(script=EXACT, specimen="chain", grip=1.5e-3, gauge=1, strain_max=0.05)
+
+
+def laboratory(out, *flags, script=SCRIPT, **values):
+    return run_script(script, *arguments({**SMALL, **values}), "--out", str(out), *flags, out=out)
+
+
+def value(run, name):
+    return run.summary["results"][name]["value"]
+
+
+@pytest.fixture(scope="module")
+def compressed(tmp_path_factory):
+    return laboratory(tmp_path_factory.mktemp("compressed") / "out", report="true", speed=0.05)
+
+
+@pytest.mark.parametrize("test", ["compression", "tension"])
+@pytest.mark.parametrize("kt", [20e9, 4e9])
+def test_a_triangular_lattice_has_its_exact_moduli(tmp_path, test, kt):
+    kn = 20e9
+    run = laboratory(tmp_path / "out", script=EXACT, test=test, kt=kt, Rn=1e12, Rt=1e12, strain_max=1e-4,
+                     record_strain=5e-7, speed=0.005, gauge=0.3)
+    assert run.code == 0, run.stderr
+    assert value(run, "youngs_modulus") == pytest.approx(2 * math.sqrt(3) * kn * (kn + kt) / (3 * kn + kt), rel=1e-3)
+    assert value(run, "poissons_ratio") == pytest.approx((kn - kt) / (3 * kn + kt), abs=1e-3)
+    assert not value(run, "failed") and value(run, "tensile_cracks") == value(run, "shear_cracks") == 0
+
+
+def test_compression_alone_never_breaks_a_bond_in_tension(tmp_path):
+    run = laboratory(tmp_path / "out", **CHAIN, record_strain=1e-4)
+    assert run.code == 0, run.stderr
+    assert value(run, "tensile_cracks") == value(run, "shear_cracks") == 0
+    # The bond of one diameter is shortened by the travel of both platens.
+    assert value(run, "peak_stress") == pytest.approx(20e9 * 0.05 * 4e-3 / 2e-3, rel=5e-3)
+
+
+def test_a_pulled_chain_breaks_at_its_strength(tmp_path):
+    run = laboratory(tmp_path / "out", **CHAIN, test="tension", speed=0.01)
+    assert value(run, "failed") and (value(run, "tensile_cracks"), value(run, "shear_cracks")) == (1, 0)
+    assert value(run, "peak_stress") == pytest.approx(0.1e6 / 2e-3, rel=0.02)
+
+
+def test_compression_breaks_the_specimen(compressed):
+    assert compressed.code == 0, compressed.stderr
+    assert value(compressed, "failed") and compressed.summary["ended"].startswith("failed at")
+    assert value(compressed, "peak_stress") > 10e6
+    assert 10e9 < value(compressed, "youngs_modulus") < 25e9 and 0 < value(compressed, "poissons_ratio") < 0.4
+    assert value(compressed, "tensile_cracks") + value(compressed, "shear_cracks") > 10
+
+
+def test_the_end_leaves_figures_and_books(compressed):
+    book = compressed.summary["audits"]["energy"]
+    assert abs(book["residual"]) < 0.03 * book["platen_work"] and book["bond_breaking"] > 0
+    assert (compressed.out / "report.html").stat().st_size > 1e4
+    columns = history(compressed.out)
+    stress = columns["stress [Pa]"]
+    assert stress[-1] < 0.5 * stress.max() == pytest.approx(0.5 * value(compressed, "peak_stress"), rel=1e-9)
+    loading = columns["platen_strain [-]"] < 0.5 * value(compressed, "peak_strain")
+    assert abs(columns["unbalanced_stress [Pa]"][loading]).max() < 0.02 * stress.max()
+
+
+def test_the_rock_is_weaker_in_tension_and_as_stiff(compressed, tmp_path):
+    pulled = laboratory(tmp_path / "out", test="tension")
+    assert value(pulled, "failed")
+    assert 1e6 < value(pulled, "peak_stress") < 0.5 * value(compressed, "peak_stress")
+    assert value(pulled, "youngs_modulus") == pytest.approx(value(compressed, "youngs_modulus"), rel=0.03)
+
+
+@pytest.mark.parametrize("law, softer", [("damage", 2e9), ("plastic", 2e9)])
+def test_softening_bonds_make_the_rock_stronger(tmp_path, law, softer):
+    steep, gentle = (laboratory(tmp_path / f"{H:g}", test="tension", law=law, H=H) for H in (1e12, softer))
+    assert value(gentle, "peak_stress") > 1.05 * value(steep, "peak_stress")
+
+
+def test_stopped_and_resumed_equals_never_stopped(compressed, tmp_path):
+    out, options = tmp_path / "out", dict(checkpoint_interval=0.01, speed=0.05)
+    stopped = interrupt_script(SCRIPT, out, SIGNALS.SIGTERM, 2, **{**SMALL, **options})
+    assert stopped.code == 128 + SIGNALS.SIGTERM
+    resumed = laboratory(out, "--resume", **options)
+    assert resumed.code == 0, resumed.stderr
+    assert resumed.summary["results"] == compressed.summary["results"]
+    assert resumed.summary["audits"] == compressed.summary["audits"]
+    assert (out / "history.csv").read_bytes() == (compressed.out / "history.csv").read_bytes()
+
+
+@pytest.mark.parametrize("values, words", [
+    ({"speed": 0}, "speed = 0 m/s: must be greater than 0"),
+    ({"test": "shear"}, "test = shear: must be one of compression, tension"),
+    ({"kn": -1}, "kn = -1 N/m: must be greater than 0"),
+    ({"grip": 0.03}, "grip = 0.03 m: must be less than half the width 0.04"),
+    ({"grip": 1e-5}, "grip = 1e-05 m: must be deep enough to hold a disc at each end"),
+    ({"gauge": 2}, "gauge = 2: must be at most 1"),
+    ({"time_step": 1e-3}, "time_step = 0.001 s: must be at most the stable step"),
+    ({"radius_max": 5e-4}, "radius_max = 0.0005 m: must be at least radius_min"),
+    ({"sped": 1}, "did you mean speed"),
+])
+def test_bad_input_ends_in_one_line(tmp_path, values, words):
+    run = laboratory(tmp_path / "out", **values)
+    errors = [line for line in run.stderr.splitlines() if line.startswith("error: ")]
+    assert run.code == 2 and len(errors) == 1 and words in errors[0] and not (tmp_path / "out").exists()
