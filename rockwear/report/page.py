@@ -155,9 +155,12 @@ def parameters(run):
 
 def whole_page(run, sections):
     """The whole page of a run."""
-    scene, ended = run.summary.get("scene", ""), run.summary.get("ended", "not known")
-    title = html.escape(words(scene))
-    body = "\n".join(section.html() for section in sections)
+    return document(words(run.summary.get("scene", "")), run.summary.get("ended", "not known"), sections)
+
+
+def document(title, remark, sections):
+    """A whole page of sections."""
+    title, body = html.escape(title), "\n".join(section.html() for section in sections)
     head = f'<head><meta charset="utf-8"><title>{title}</title>\n<style>{LOOK}</style></head>'
     return (f'<!DOCTYPE html>\n<html lang="en">{head}\n<body><h1>{title}</h1>\n'
-            f'<p class="ended">{html.escape(ended)}</p>\n{body}\n</body></html>\n')
+            f'<p class="ended">{html.escape(remark)}</p>\n{body}\n</body></html>\n')
