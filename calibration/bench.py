@@ -1,9 +1,9 @@
-"""Speed against error of the main scene: what each knob costs, what it is off by, and why the defaults are what they are.
+"""Speed against error of the main scene: what each knob costs, what it is off by, and where the defaults come from.
 
     python3 -m calibration.bench DIR        (make bench)
 
-Three knobs of yade_scripts/test_tooth.py, each against its finest setting on otherwise the same run, two runs at a time;
-the cost of all our engines together comes from calibration/overhead.py. Sampling and heat do not act back on the motion
+Three knobs of yade_scripts/test_tooth.py, each against its finest setting on otherwise the same run, two at a time; the
+cost of all our engines together comes from calibration/overhead.py. Sampling and heat do not act back on the motion
 while no particle is removed (acceleration 100 here), so their runs follow one trajectory and differ by the knob alone.
 A change of the time step changes which bond breaks first, and then everything: its error is shown on rock that cannot
 break, beside the scatter of the breaking rock over seeds.
@@ -83,7 +83,7 @@ def rows_against_finest(runs, knob):
             "wear": abs(value(summary, "worn_volume") / value(reference, "worn_volume") - 1),
             "distribution": float(np.abs(depth - exact).sum() / exact.sum()),
             "tip temperature": abs(warming(summary) / warming(reference) - 1) if warming(reference) > 0 else 0.0,
-            "energy audit": abs(summary["audits"]["energy"]["residual"] / summary["audits"]["energy"]["tool_work"])})
+            "energy audit": energy_residual(summary)})
     return rows
 
 
@@ -92,7 +92,13 @@ def over_seeds(summaries):
     forces = [value(s, "mean_cutting_force") for s in summaries]
     return {"mean_cutting_force": mean(forces), "scatter": stdev(forces),
             "loop_seconds": mean(s["wall_time"]["loop"] for s in summaries),
-            "energy_residual": max(abs(s["audits"]["energy"]["residual"] / s["audits"]["energy"]["tool_work"]) for s in summaries)}
+            "energy_residual": max(map(energy_residual, summaries))}
+
+
+def energy_residual(summary):
+    """What the energy audit misses, as a part of the tool's work."""
+    book = summary["audits"]["energy"]
+    return abs(book["residual"] / book["tool_work"])
 
 
 def draw(axes, rows, knob, default, names, unit, right="cost", right_label="our engines / YADE"):
@@ -112,6 +118,24 @@ def draw(axes, rows, knob, default, names, unit, right="cost", right_label="our 
     axes.legend(fontsize=8, loc="best")
 
 
+def markdown(result):
+    """The numbers as bench.md."""
+    lines = ["# Speed against error", "", "Test tooth at M's resolution; each error against the first row of its table.", "",
+             "![curves](speed_against_error.png)", ""]
+    for name in ("sampling", "heat", "step"):
+        rows = result[name]
+        lines += [f"| {' | '.join(key.replace('_', ' ') for key in rows[0])} |", "|---" * len(rows[0]) + "|",
+                  *(f"| {' | '.join(f'{number:.3g}' for number in row.values())} |" for row in rows), ""]
+    lines += [f"All our engines at the defaults: {100 * result['overhead']['overhead']:.1f} % of YADE's own step of "
+              f"{1e3 * result['overhead']['median']['dead']:.3f} ms (alive and dead in turns, {len(result['overhead']['seconds_a_step']['dead'])} times, medians).", "",
+              f"Breaking rock over packings {', '.join(map(str, SEEDS))}, 4 ms:", "",
+              "| variant | mean cutting force, kN/m | scatter, kN/m | wall time, s | largest energy residual |",
+              "|---|---|---|---|---|",
+              *(f"| {name} | {1e-3 * v['mean_cutting_force']:.0f} | {1e-3 * v['scatter']:.0f} | {v['loop_seconds']:.0f} | "
+                f"{100 * v['energy_residual']:.1f} % |" for name, v in result["seeds"].items()), ""]
+    return "\n".join(lines)
+
+
 def main(folder):
     """All curves, the figure and the numbers."""
     folder.mkdir(parents=True, exist_ok=True)
@@ -125,7 +149,8 @@ def main(folder):
     def group(prefix):
         return {name: summary for name, summary in runs.items() if name.startswith(prefix)}
 
-    sampling, heat = rows_against_finest(group("sampling-"), "sampling_period"), rows_against_finest(group("heat-"), "heat_period")
+    sampling = rows_against_finest(group("sampling-"), "sampling_period")
+    heat = rows_against_finest(group("heat-"), "heat_period")
     step = rows_against_finest(group("step-"), "time_step_fraction")
     exact = value(runs["step-0.1"], "specific_energy")
     for row, summary in zip(step, group("step-").values()):
@@ -136,17 +161,19 @@ def main(folder):
     overhead = json.loads((folder / "overhead.json").read_text())
 
     figure, axes = plt.subplots(1, 3, figsize=(15, 4.2), constrained_layout=True)
-    draw(axes[0], sampling, "sampling_period", DEFAULT_SAMPLING, ["wear", "distribution", "tip temperature", "energy audit"], "steps")
+    draw(axes[0], sampling, "sampling_period", DEFAULT_SAMPLING,
+         ["wear", "distribution", "tip temperature", "energy audit"], "steps")
     draw(axes[1], heat, "heat_period", DEFAULT_HEAT, ["wear", "tip temperature"], "s")
-    draw(axes[2], step, "time_step_fraction", DEFAULT_FRACTION, ["specific energy", "wear", "tip temperature", "energy audit"],
-         "of the critical step", "loop_seconds", "wall time of the run, s")
+    draw(axes[2], step, "time_step_fraction", DEFAULT_FRACTION,
+         ["specific energy", "wear", "tip temperature", "energy audit"], "of the critical step", "loop_seconds", "wall time of the run, s")
     figure.suptitle(f"Test tooth: error against cost. All our engines at the defaults: {100 * overhead['overhead']:.1f} % "
                     f"of YADE's step of {1e3 * overhead['median']['dead']:.2f} ms")
     figure.savefig(folder / "speed_against_error.png", dpi=110)
     result = {"sampling": sampling, "heat": heat, "step": step, "overhead": overhead,
               "seeds": {name: over_seeds(found) for name, found in seeds.items()}}
     (folder / "bench.json").write_text(json.dumps(result, indent=1))
-    print(json.dumps({**result, "overhead": overhead["overhead"]}, indent=1))
+    (folder / "bench.md").write_text(markdown(result))
+    print(markdown(result))
 
 
 if __name__ == "__main__":
