@@ -120,8 +120,9 @@ def draw(axes, rows, knob, default, names, unit, right="cost", right_label="our 
 
 def markdown(result):
     """The numbers as bench.md."""
-    lines = ["# Speed against error", "", "Test tooth at M's resolution; each error against the first row of its table.", "",
-             "![curves](speed_against_error.png)", ""]
+    lines = ["# Speed against error", "", "Test tooth at M's resolution; each error against the first row of its table.",
+             "Runs go two at a time, so that their wall times are rough; the cost of our engines in the line below the",
+             "tables is measured in turns.", "", "![curves](speed_against_error.png)", ""]
     for name in ("sampling", "heat", "step"):
         rows = result[name]
         lines += [f"| {' | '.join(key.replace('_', ' ') for key in rows[0])} |", "|---" * len(rows[0]) + "|",
