@@ -104,25 +104,29 @@ def _arguments(arguments, known):
     return given
 
 
-def _table_row():
-    """The row of a yade-batch table that this run is for, as {column: text}; nothing outside a batch."""
-    place = os.environ.get("YADE_BATCH")
-    if not place:
-        return {}
-    from yade.utils import TableParamReader
-    table, line = place.rsplit(":", 1)
-    row = TableParamReader(table).paramDict()[int(line)]
-    return {name: value for name, value in row.items() if not name.startswith("!") and name != "description"}
-
-
-def batch_row():
-    """The name of the row that yade-batch runs, or None outside a batch."""
+def _batch_line():
+    """(line number, {column: text}) of the yade-batch row that this run is for; None outside a batch."""
     place = os.environ.get("YADE_BATCH")
     if not place:
         return None
     from yade.utils import TableParamReader
     table, line = place.rsplit(":", 1)
-    name = TableParamReader(table).paramDict()[int(line)].get("description") or f"row {line}"
+    return int(line), TableParamReader(table).paramDict()[int(line)]
+
+
+def _table_row():
+    """{column: text} of the row's parameters; nothing outside a batch."""
+    _, row = _batch_line() or (0, {})
+    return {name: value for name, value in row.items() if not name.startswith("!") and name != "description"}
+
+
+def batch_row():
+    """A folder's name for the row that yade-batch runs, or None outside a batch."""
+    found = _batch_line()
+    if found is None:
+        return None
+    line, row = found
+    name = row.get("description") or f"row {line}"
     return "".join(c if c.isalnum() or c in "-_.=," else "_" for c in name)
 
 

@@ -1,7 +1,6 @@
 """Scenes are run as a user runs them: YADE in a process of its own, judged by exit code, words and numbers."""
 import json
 import os
-import signal
 import subprocess
 import time
 from pathlib import Path
@@ -84,5 +83,3 @@ def history(out):
     table = np.array([[float(cell) for cell in line.split(",")] for line in lines[1:]])
     return {name: table[:, i] for i, name in enumerate(lines[0].split(","))}
 
-
-SIGNALS = signal

@@ -1,9 +1,10 @@
 """The virtual laboratory: exact moduli of a lattice, failure of a small specimen, resuming, bad input."""
 import math
+import signal
 
 import pytest
 
-from .conftest import ROOT, SIGNALS, arguments, history, interrupt_script, run_script
+from .conftest import ROOT, arguments, history, interrupt_script, run_script
 
 SCRIPT = ROOT / "yade_scripts/uniaxial.py"
 EXACT = ROOT / "tests/scenes/scripts/laboratory.py"
@@ -85,8 +86,8 @@ def test_softening_bonds_make_the_rock_stronger(tmp_path, law, softer):
 
 def test_stopped_and_resumed_equals_never_stopped(compressed, tmp_path):
     out, options = tmp_path / "out", dict(checkpoint_interval=0.01, speed=0.05)
-    stopped = interrupt_script(SCRIPT, out, SIGNALS.SIGTERM, 2, **{**SMALL, **options})
-    assert stopped.code == 128 + SIGNALS.SIGTERM
+    stopped = interrupt_script(SCRIPT, out, signal.SIGTERM, 2, **{**SMALL, **options})
+    assert stopped.code == 128 + signal.SIGTERM
     resumed = laboratory(out, "--resume", **options)
     assert resumed.code == 0, resumed.stderr
     assert resumed.summary["results"] == compressed.summary["results"]
