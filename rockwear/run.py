@@ -99,7 +99,6 @@ class Run:
             raise ParameterError("out", str(self.folder), f"a folder that can be written ({error.strerror})") from None
         if self.values["resume"]:
             state, directory = checkpoint.load(self.folder / "checkpoint", _identity(self.name, self.values))
-            self.scene.build()
             self.scene.restore(state["scene"], directory, self.folder)
             self.snapshots, self.next_snapshot = int(state["snapshots"]), float(state["next_snapshot"])
             self.wall_before = float(state["wall_time"])

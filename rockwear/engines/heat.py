@@ -32,7 +32,6 @@ class Heat(Engine):
         self.carried_away = self.replaced = 0.0
         self.surface_time = -math.inf
         self.clock = 0.0
-        self.exposed = np.zeros(self.n + tool.count)
         self.exchanged_with = {}
 
     def act(self):
@@ -85,16 +84,16 @@ class Heat(Engine):
         self._expose(in_contact)
 
     def _expose(self, in_contact):
-        self.exposed[:] = 0.0
-        self.exposed[:self.n] = free_surface(positions=self.rock.current_positions(), radii=self.rock.radii)
+        exposed = np.zeros(self.n + self.tool.count)
+        exposed[:self.n] = free_surface(positions=self.rock.current_positions(), radii=self.rock.radii)
         alive = np.flatnonzero(self.tool.erosion.alive)
         if len(alive):
-            self.exposed[self.n + alive] = free_surface(positions=self.tool.positions[alive], radii=self.tool.radii[alive])
-        self.exposed[:self.n][self.rock.supported] = 0.0
-        self.exposed[self.n:][self.tool.mounted] = 0.0
-        self.exposed[in_contact] = 0.0
+            exposed[self.n + alive] = free_surface(positions=self.tool.positions[alive], radii=self.tool.radii[alive])
+        exposed[:self.n][self.rock.supported] = 0.0
+        exposed[self.n:][self.tool.mounted] = 0.0
+        exposed[in_contact] = 0.0
         present = np.flatnonzero(self.network.present)
-        self.network.convect(present, self.convection * self.exposed[present], self.ambient)
+        self.network.convect(present, self.convection * exposed[present], self.ambient)
 
     def remove(self, indices):
         """Tool particles `indices` are gone, with the heat they hold."""
@@ -129,12 +128,11 @@ class Heat(Engine):
     def state(self):
         network = self.network.state()
         return {"network": network, "carried_away": self.carried_away, "replaced": self.replaced, "clock": self.clock,
-                "surface_time": self.surface_time, "exposed": self.exposed.copy(), "initial_content": self.initial_content,
+                "surface_time": self.surface_time, "initial_content": self.initial_content,
                 "touched": np.array(sorted(self.exchanged_with), int).reshape(-1, 2)}
 
     def restore(self, state):
         self.network.restore(state["network"])
-        self.exposed = state["exposed"].copy()
         for name in ("carried_away", "replaced", "clock", "surface_time", "initial_content"):
             setattr(self, name, float(state[name]))
         self.exchanged_with = {(int(i), int(j)): 0.0 for i, j in state["touched"].tolist()}
