@@ -1,0 +1,63 @@
+"""Scenes run in processes of their own, so many at a time, each into its folder."""
+import subprocess
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+from rockwear.report.folder import RunFolder
+
+ROOT = Path(__file__).resolve().parents[1]
+
+
+class RunFailed(RuntimeError):
+    """A scene ended with an exit code other than 0."""
+
+
+class Runs:
+    """Runs in subfolders of `folder`, `at_once` at a time. With `keep`, finished ones of the same values stay as they are.
+
+    Use it as a context: an exception within lets the runs under way end, and starts no others.
+    """
+
+    def __init__(self, folder, *, at_once=2, keep=False):
+        self.folder, self.keep = Path(folder), keep
+        self.pool = ThreadPoolExecutor(at_once)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, kind, error, trace):
+        self.pool.shutdown(wait=True, cancel_futures=kind is not None)
+
+    def start(self, name, script, **values):
+        """Queue a run of `script` (a path from the root of the repository). -> Future of its RunFolder.
+
+        The future raises RunFailed where the scene does not end well.
+        """
+        return self.pool.submit(self._run, self.folder / name, script, values)
+
+    def _run(self, folder, script, values):
+        if self.keep and finished(folder, values):
+            return RunFolder(folder)
+        words = [word for name, value in values.items() for word in (f"--{name}", str(value))]
+        done = subprocess.run(["yade", "-n", "-x", "-j1", str(ROOT / script), "--out", str(folder), *words],
+                              capture_output=True, text=True, stdin=subprocess.DEVNULL)
+        if done.returncode:
+            said = done.stderr.strip().splitlines() or ["nothing said"]
+            raise RunFailed(f"{folder.name} ended with {done.returncode}: {said[-1]}")
+        return RunFolder(folder)
+
+
+def finished(folder, values):
+    """True for a folder with the summary of a run that had these values."""
+    try:
+        parameters = RunFolder(folder).parameters
+    except (OSError, ValueError):
+        return False
+    return all(name in parameters and _same(parameters[name], value) for name, value in values.items())
+
+
+def _same(stored, value):
+    try:
+        return float(stored) == float(value)
+    except (TypeError, ValueError):
+        return str(stored).lower() == str(value).lower()
