@@ -19,6 +19,7 @@ from .kernels.checks import require
 from .kernels.conduction import HeatNetwork, calibrated_conductance, effusivity, effusivity_share
 from .kernels.outline import read_outline, tooth
 from .kernels.stability import critical_time_step
+from .kernels.wear_laws import LAWS, wear_law
 from .materials import Material
 from .parameters import Parameter, above_zero, choice, flag, integer, number, text
 from .rock import Specimen
@@ -76,6 +77,10 @@ PARAMETERS = [
     Parameter("hardness_temperature", -1.0, "K", number(-1), "constant hardness at this temperature; -1: the tool's own",
               "M 9.2 took 293"),
     Parameter("wear_coefficient", 0.01128, "", number(0), "Archard's k", "mean of M 6.14-6.15"),
+    Parameter("wear_law", "dissipation", "", choice(*LAWS), "friction work, pressure, power of either, or several modes",
+              "M 6.3, 6.1, 6.5, 6.4"),
+    Parameter("wear_exponent", 1.0, "", above_zero, "n of the power law, k (p / H)^n", "M 6.5; the value is ours"),
+    Parameter("wear_modes", "", "", text, "k/exponent/share of the friction for each mode, with commas", "M 6.4-6.5"),
     Parameter("acceleration", 7000.0, "", number(0), "factor on k", "M 9.2"),
     Parameter("removal", "volume", "", choice("volume", "depth"), "criterion: Archard's volume conserved, or the depth of M 6.5"),
     # heat
@@ -129,6 +134,8 @@ class Cutting(scene.Scene):
                 f"more than a rock particle, {2 * v.radius_max:g}, and less than the specimen's height {v.height:g}", "m")
         self._check_travel(v)
         self.hardness = self._hardness(v)
+        self.wear_law = wear_law(v.wear_law, k=v.wear_coefficient, mu=v.tool_mu, exponent=v.wear_exponent,
+                                 modes=v.wear_modes).scaled(v.acceleration)
         self.rock_material = Material(density=v.rock_density, specific_heat=v.rock_specific_heat,
                                       conductivity=v.rock_conductivity)
         self.tool_material = Material(density=v.tool_density, specific_heat=v.tool_specific_heat,
@@ -222,10 +229,10 @@ class Cutting(scene.Scene):
         self.bonds = Bonds(pairs=rock.pairs, law=self.law, strength_factor=rock.strength_factor, clock=lambda: self.time)
         motion = Foresight(masses=rock.masses, inertias=rock.inertias, radii=rock.radii, held=rock.supported)
         self.rock_friction = RockFriction(bonds=self.bonds, motion=motion)
-        self.contact = ToolContact(tool=self.bodies, motion=motion, velocity=self.velocity)
-        self.wear = Wear(contact=self.contact, erosion=tool.erosion, tool=self.bodies, mu=v.tool_mu,
-                         coefficient=v.wear_coefficient * v.acceleration, hardness=self.hardness,
-                         temperature=self._tool_temperature, on_removal=self._on_removal)
+        self.contact = ToolContact(tool=self.bodies, motion=motion, velocity=self.velocity,
+                                   needs=self.wear_law.needs)
+        self.wear = Wear(contact=self.contact, erosion=tool.erosion, tool=self.bodies, law=self.wear_law,
+                         hardness=self.hardness, temperature=self._tool_temperature, on_removal=self._on_removal)
         self.heat = self._heat() if v.heat else None
         self.damping = BackgroundDamping(rate=v.background_damping, bodies=range(rock.count)) if v.background_damping else None
         self.recorder = Recorder([self._log, self.wear.log, self.bonds.log] + ([self.heat.log] if self.heat else []))

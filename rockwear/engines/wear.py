@@ -4,14 +4,15 @@ import math
 import numpy as np
 from yade import InsertionSortCollider, Law2_ScGeom_FrictViscoPhys_CundallStrackVisco, O
 
-from ..kernels.archard import worn_volume
+from ..kernels.wear_laws import NORMAL, WORK
 from . import SLIDING, Engine, contact_energy, law_functor, yade_engine
 
 
 class ToolContact(Engine):
     """Samples the contacts of the tool's skin: force, friction work by particle, and who touches whom.
 
-    tool: the tool's bodies (see scene.ToolBodies); motion: engines.motion.Foresight of the rock; velocity: (2,) m/s.
+    tool: the tool's bodies (see scene.ToolBodies); motion: engines.motion.Foresight of the rock; velocity: (2,) m/s;
+    needs: sums (force, exponent) of F^exponent times slip by tool particle that the wear law takes (kernels.wear_laws).
 
     The friction work since the last visit is exactly what YADE's law dissipated; |Ft| times slip of the contacts found
     sliding now only says where it went, so that the shares add up to the whole. Tool work, F v dt, and the work of
@@ -21,13 +22,13 @@ class ToolContact(Engine):
 
     name = "tool_contact"
 
-    def __init__(self, *, tool, motion, velocity):
+    def __init__(self, *, tool, motion, velocity, needs=(WORK,)):
         super().__init__()
         self.tool, self.motion, self.velocity = tool, motion, np.asarray(velocity, float)
         particles = len(motion.per_mass)
         self.tool_work = np.zeros(tool.count)
         self.rock_work = np.zeros(particles)
-        self.wearing_work = np.zeros(tool.count)
+        self.slid = {need: np.zeros(tool.count) for need in dict.fromkeys((WORK, *needs))}
         self.touching = {}
         self.booked = self.work_done = self.dashpot_dissipated = 0.0
         self.impulse = np.zeros(2)
@@ -73,24 +74,33 @@ class ToolContact(Engine):
             self.dashpot_dissipated += (dashpot.squaredNorm() / phys.cn + gain) * elapsed
         tangential = shear.norm()
         if tangential > 0 and tangential >= SLIDING * phys.tangensOfFrictionAngle * normal.norm():
-            sliding.append((index, rock, tangential * interaction.geom.shearInc.norm()))
+            # A dashpot may pull; what presses the surfaces together is no more than compression.
+            pressing = max(normal.dot(interaction.geom.normal), 0.0)
+            sliding.append((index, rock, tangential * interaction.geom.shearInc.norm(), pressing, tangential))
 
     def _share(self, sliding):
-        weight = math.fsum(w for _, _, w in sliding)
+        weight = math.fsum(w for _, _, w, _, _ in sliding)
         if weight <= 0:
             return
         total = self.law.plasticDissipation() - self.booked
-        for index, rock, w in sliding:
+        for index, rock, w, pressing, tangential in sliding:
             work = total * w / weight
             self.tool_work[index] += work
-            self.wearing_work[index] += work
             self.rock_work[rock] += work
+            slip = work / tangential
+            for (force, exponent), summed in self.slid.items():
+                summed[index] += (pressing if force == NORMAL else tangential)**exponent * slip
         self.booked += total
 
-    def take_wearing_work(self):
-        """(m,) friction work (J) at each tool particle since the last call, for wear."""
-        taken, self.wearing_work = self.wearing_work, np.zeros(self.tool.count)
+    def take_slid(self):
+        """{(force, exponent): (m,) sum of F^exponent times slip, N^exponent m} of tool particles since the last call."""
+        taken, self.slid = self.slid, {need: np.zeros(self.tool.count) for need in self.slid}
         return taken
+
+    @property
+    def wearing_work(self):
+        """(m,) friction work (J) at each tool particle that wear has not taken yet."""
+        return self.slid[WORK]
 
     def take_heating(self):
         """Friction work (J) at tool and rock particles, and seconds in touch by (tool, rock) pair, since the last call."""
@@ -116,14 +126,15 @@ class ToolContact(Engine):
     def state(self):
         pairs = sorted(self.touching)
         return {"tool_work": self.tool_work.copy(), "rock_work": self.rock_work.copy(),
-                "wearing_work": self.wearing_work.copy(),
+                "slid": np.array(list(self.slid.values())),
                 "touching": np.array([(i, j, self.touching[i, j]) for i, j in pairs], float).reshape(-1, 3),
                 "booked": self.booked, "dissipation": self.friction, "work_done": self.work_done,
                 "dashpot_dissipated": self.dashpot_dissipated, "impulse": self.impulse.copy()}
 
     def restore(self, state):
-        for name in ("tool_work", "rock_work", "wearing_work", "impulse"):
+        for name in ("tool_work", "rock_work", "impulse"):
             setattr(self, name, state[name].copy())
+        self.slid = dict(zip(self.slid, state["slid"].copy()))
         self.touching = {(int(i), int(j)): t for i, j, t in state["touching"].tolist()}
         for name in ("booked", "work_done", "dashpot_dissipated"):
             setattr(self, name, float(state[name]))
@@ -131,28 +142,28 @@ class ToolContact(Engine):
 
 
 class Wear(Engine):
-    """Archard wear with H(theta) (M 6.9, P 61), V = (k / mu) W / H, and the removal of particles worn away.
+    """Wear with H(theta) by the laws of M 6.3-6.4 (P 61), and the removal of particles worn away.
 
-    contact: the ToolContact that says where friction works; erosion: kernels.erosion.Erosion of the tool;
-    coefficient: Archard's k times the acceleration factor; temperature: a function giving (m,) K of the tool particles.
+    contact: the ToolContact that says where and under what force the tool slides; erosion: kernels.erosion.Erosion of
+    the tool; law: of kernels.wear_laws, accelerated; temperature: a function giving (m,) K of the tool particles.
     """
 
     name = "wear"
 
-    def __init__(self, *, contact, erosion, tool, coefficient, mu, hardness, temperature, on_removal):
+    def __init__(self, *, contact, erosion, tool, law, hardness, temperature, on_removal):
         super().__init__()
         self.contact, self.erosion, self.tool = contact, erosion, tool
-        self.coefficient, self.mu, self.hardness, self.temperature = coefficient, mu, hardness, temperature
+        self.law, self.hardness, self.temperature = law, hardness, temperature
         self.on_removal = on_removal
         self.contact_energy_removed = 0.0
         self.work_used = 0.0
 
     def act(self):
-        work = self.contact.take_wearing_work()
-        if not work.any():
+        slid = self.contact.take_slid()
+        if not slid[WORK].any():
             return
-        self.work_used += float(work.sum())
-        volume = worn_volume(k=self.coefficient, mu=self.mu, work=work, hardness=self.hardness(self.temperature()))
+        self.work_used += float(slid[WORK].sum())
+        volume = self.law.volume(slid, self.hardness(self.temperature()), 2 * self.erosion.radii)
         removed, uncovered = self.erosion.wear(volume)
         if removed:
             self._remove(removed, uncovered)

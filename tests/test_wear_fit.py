@@ -1,0 +1,97 @@
+"""The fitting helper on M's four rows and on rows of one's own, as a user runs it."""
+import json
+
+import numpy as np
+import pytest
+
+from calibration import wear_fit
+from calibration.wear_fit import EXAMPLE, fit, main, read
+from rockwear.kernels.archard import BRINELL, MET91
+
+
+def rows_of(found):
+    return [k for one in found.values() for k, _ in one["rows"]]
+
+
+def test_ms_four_rows_with_ms_unit_of_hardness_give_ms_k():
+    """M rounds a HB to 10 MPa, and its k to 1e-4; 6.14 and 6.15 are printed in each other's place."""
+    found = rows_of(fit(read(EXAMPLE, 1e7), brinell=1e7))
+    assert [round(k, 4) for k in found[:2]] == [0.0023, 0.0028]
+    assert found[2] == pytest.approx(0.01125, rel=2e-3) and found[3] == pytest.approx(0.0113, rel=2e-3)
+
+
+def test_ms_four_rows_in_si_hold_ms_k_within_their_errors():
+    found = fit(read(EXAMPLE))
+    singles = [pair for one in found.values() for pair in one["rows"]]
+    for (k, u), published in zip(singles, (0.0023, 0.0028, 0.0113, 0.01125)):
+        assert abs(k - published) < u < 0.05 * k
+    assert found["MET71"]["law"].k == pytest.approx(0.0025, abs=found["MET71"]["fit"].uncertainty[0])
+    # The two tests of MET 71 differ by more than their errors; those of MET 91 agree.
+    assert found["MET71"]["fit"].misfit > 4 > 1 > found["MET91"]["fit"].misfit
+
+
+def test_all_linear_forms_give_one_k_and_the_power_law_its_own():
+    rows = read(EXAMPLE)
+    assert rows_of(fit(rows, law="dissipation", mu=0.42)) == pytest.approx(rows_of(fit(rows)), rel=1e-12)
+    assert rows_of(fit(rows, law="power", mu=0.42, exponent=1.0)) == pytest.approx(rows_of(fit(rows)), rel=1e-12)
+    square = fit(rows, law="power", exponent=2.0)["MET91"]
+    tests = square["tests"]
+    assert square["rows"][0][0] == pytest.approx(tests.depth[0] / tests.distance[0] * (tests.hardness[0] / tests.pressure[0])**2)
+
+
+def test_errors_propagate_column_by_column(tmp_path):
+    """3 % of force, 4 % of depth: 5 % of k; the temperature counts by the slope of H."""
+    file = tmp_path / "mine.csv"
+    file.write_text("steel,force [kN],area [cm2],distance [km],depth [um],temperature [K],force error [kN],depth error [um]\n"
+                    "MET91,1,1,0.5,500,500,0.03,20\n")
+    (k, u), = fit(read(file))["MET91"]["rows"]
+    assert k == pytest.approx(500e-6 * MET91(500.0) / (1e7 * 500), rel=1e-12) and u / k == pytest.approx(0.05, rel=1e-12)
+    file.write_text("steel,pressure [MPa],distance [m],depth [mm],temperature [degC],temperature error [K]\n"
+                    "MET91,10,500,0.5,550,10\n")
+    (k, u), = fit(read(file))["MET91"]["rows"]
+    slope = (375 - 247) / 100 * BRINELL
+    assert u / k == pytest.approx(10 * slope / MET91(550 + 273.15), rel=1e-9)
+
+
+def test_own_steel_by_hardness_and_measured_friction(tmp_path):
+    file = tmp_path / "mine.csv"
+    lines = [f",{p},{p * 2.5 * 0.4},100,{1e3 * 4.0 * (p / 2000)**1.5 * 100},2000" for p in (5, 10, 20, 30)]
+    file.write_text("\ufeffsteel,pressure [MPa],friction [N],distance [m],depth [mm],hardness [MPa],force [N]\n"
+                    + "\n".join(f"{line},{p * 2.5}" for line, p in zip(lines, (5, 10, 20, 30))) + "\n")
+    one = fit(read(file), law="power", mu=0.4, exponent=None)[""]
+    assert one["law"].k == pytest.approx(4.0, rel=1e-9) and one["exponent"][0] == pytest.approx(1.5, rel=1e-9)
+
+
+def test_command_line_leaves_numbers_and_a_figure(tmp_path, capsys):
+    assert main([str(EXAMPLE), "--out", str(tmp_path / "out")]) == 0
+    said = capsys.readouterr().out
+    assert "MET71  all tests: k = 0.0024713" in said and "the tests differ by" in said
+    stored = json.loads((tmp_path / "out/wear_fit.json").read_text())
+    assert np.shape(stored["steels"]["MET91"]["k_of_each_test"]) == (2,)
+    assert (tmp_path / "out/wear_fit.png").stat().st_size > 1e4
+
+
+@pytest.mark.parametrize("text, words", [
+    ("", "a CSV file with a header"), ("steel,force [lb]\nMET71,1\n", "column force = lb: must be one of N, kN"),
+    ("colour [m]\n1\n", "column colour"), ("steel,pressure [Pa],distance [m],depth [mm],temperature [K]\nMET71,x,1,1,400\n",
+                                           "pressure in line 2 = x Pa: must be a number"),
+    ("steel,pressure [Pa],distance [m],depth [mm],temperature [K]\nMET71,1e6,1,1,1400\n", "temperature = 1400 K"),
+    ("steel,pressure [Pa],distance [m],depth [mm],temperature [K]\nX12,1e6,1,1,400\n", "steel = X12"),
+    ("steel,pressure [Pa],distance [m],depth [mm],temperature [K]\nMET71,1e6,1,-1,400\n", "depth = -0.001 m: must be"),
+    ("steel,force [N],distance [m],depth [mm],temperature [K]\nMET71,1e6,1,1,400\n", "area = nothing"),
+    ("steel,pressure [Pa],depth [mm],temperature [K]\nMET71,1e6,1,400\n", "distance = nothing")])
+def test_bad_files_end_in_one_line(tmp_path, capsys, text, words):
+    file = tmp_path / "bad.csv"
+    file.write_text(text)
+    assert main([str(file)]) == 2
+    said = capsys.readouterr().err
+    assert said.startswith("error: ") and words in said and said.count("\n") == 1
+
+
+def test_a_file_that_is_not_there(capsys):
+    assert main(["nowhere.csv"]) == 2 and "nowhere.csv" in capsys.readouterr().err
+
+
+def test_documented_columns_are_those_that_are_read():
+    for name in wear_fit.UNITS:
+        assert name in wear_fit.__doc__
