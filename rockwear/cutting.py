@@ -16,7 +16,7 @@ from .engines.wear import ToolContact, Wear
 from .kernels.archard import BRINELL, KELVIN, MET71, MET91, Hardness
 from .kernels.bond_laws import LINEAR_LAWS, linear_law
 from .kernels.checks import require
-from .kernels.conduction import HeatNetwork, calibrated_conductance, effusivity, effusivity_share
+from .kernels.conduction import HeatNetwork, bar_conductance, calibrated_conductance, effusivity, effusivity_share
 from .kernels.outline import read_outline, tooth
 from .kernels.stability import critical_time_step
 from .kernels.wear_laws import LAWS, wear_law
@@ -66,6 +66,8 @@ PARAMETERS = [
     Parameter("tool_conductivity", 60.0, "W/mK", above_zero, "conductivity of the steel", "M 7.4"),
     # motion
     Parameter("velocity", 4.0, "m/s", above_zero, "cutting velocity", "M 9.2"),
+    Parameter("speed_up", 1.0, "", above_zero, "the mechanics run so many times as fast as the process; heat flows, and "
+              "all times count, in the process's own seconds", "M 12.1, there 5"),
     Parameter("depth_of_cut", 0.008, "m", above_zero, "depth of cut", "ours"),
     Parameter("approach", 0.5e-3, "m", number(0), "free way before the tool meets the rock", "ours"),
     Parameter("start_up", 0.005, "s", above_zero, "time of the start-up cut", "M 9.1"),
@@ -86,6 +88,13 @@ PARAMETERS = [
     # heat
     Parameter("heat", True, "", flag, "heat, or a hardness at the tool's first temperature"),
     Parameter("heat_fraction", 0.85, "", number(0, 1), "chi, the part of friction work that becomes heat", "P 5.2"),
+    Parameter("heat_sharing", "effusivity", "", choice("effusivity", "equal"), "of friction heat between tool and rock",
+              "P 39-41; M 4.5 shares equally"),
+    Parameter("conduction", True, "", flag, "false: all heat stays with the particles that it arose at", "M 10.1"),
+    Parameter("bond_conductance", "packing", "", choice("packing", "P", "M"), "between particles: fitted to the packing, so "
+              "that it conducts as its material, or a bar between two centres", "ours; P 64-65: conductivity, M 11.1: half of it"),
+    Parameter("root", "insulated", "", choice("insulated", "fixed"), "the tool's particles held by the shank", "M 11.3"),
+    Parameter("root_temperature", 293.15, "K", number(0), "of a fixed root", "M 11.3"),
     Parameter("contact_conductance", 1500.0, "W/m2K", number(0), "between tool and rock", "P 5.2"),
     Parameter("convection", 30.0, "W/m2K", number(0), "at the free surface, natural air", "M 7.5"),
     Parameter("ambient_temperature", 293.15, "K", number(0), "of the air", "M 9.2"),
@@ -124,7 +133,8 @@ class Cutting(scene.Scene):
     def __init__(self, values):
         self.values = values
         v = self.v = SimpleNamespace(**values)
-        self.velocity = np.array([v.velocity, 0.0])
+        self.speed_up = v.speed_up
+        self.velocity = np.array([v.velocity * v.speed_up, 0.0])
         require(v.radius_max >= v.radius_min, "radius_max", v.radius_max, f"at least radius_min = {v.radius_min:g}", "m")
         require(v.tool_radius_max >= v.tool_radius_min, "tool_radius_max", v.tool_radius_max,
                 f"at least tool_radius_min = {v.tool_radius_min:g}", "m")
@@ -175,7 +185,7 @@ class Cutting(scene.Scene):
     def _hardness(self, v):
         table = HARDNESS[v.steel]
         low, high = table.limits
-        for name in ("tool_temperature", "rock_temperature", "ambient_temperature"):
+        for name in ("tool_temperature", "rock_temperature", "ambient_temperature", "root_temperature"):
             value = getattr(v, name)
             require(low <= value <= high, name, value, f"inside the hardness table of {v.steel}, {low:g} to {high:g}", "K")
         if v.hardness_temperature >= 0:
@@ -236,33 +246,44 @@ class Cutting(scene.Scene):
         self.heat = self._heat() if v.heat else None
         self.damping = BackgroundDamping(rate=v.background_damping, bodies=range(rock.count)) if v.background_damping else None
         self.recorder = Recorder([self._log, self.wear.log, self.bonds.log] + ([self.heat.log] if self.heat else []))
-        kick = 0.5 * float(rock.masses.max()) * v.velocity**2
+        kick = 0.5 * float(rock.masses.max()) * (v.velocity * v.speed_up)**2
         self.watch = Watch(work=lambda: self.contact.work_done, floor=50 * kick)
         self._enlist(self.bonds, self.contact, self.rock_friction, LettingGo(self.bonds), self.wear, self.heat,
                      self.damping, self.recorder, self.watch)
 
     def _heat(self):
         v, rock, tool = self.v, self.rock, self.tool
-        rock_share = calibrated_conductance(positions=rock.positions, edges=rock.pairs, conductance=1.0,
-                                            conductivity=v.rock_conductivity)[0]
         capacity = np.concatenate([rock.masses * v.rock_specific_heat, tool.masses * v.tool_specific_heat])
         temperature = np.repeat([v.rock_temperature, v.tool_temperature], [rock.count, tool.count])
-        network = HeatNetwork(capacity=capacity, temperature=temperature, edges=rock.pairs, conductance=rock_share)
+        network = HeatNetwork(capacity=capacity, temperature=temperature, edges=np.empty((0, 2), int), conductance=0.0)
         e_tool, e_rock = (effusivity(m.conductivity, m.density, m.specific_heat)
                           for m in (self.tool_material, self.rock_material))
         return Heat(network=network, bonds=self.bonds, rock_friction=self.rock_friction, tool_contact=self.contact,
                     rock=rock, tool=tool, heat_fraction=v.heat_fraction,
-                    tool_share=effusivity_share(e_tool, e_rock),
+                    tool_share=effusivity_share(e_tool, e_rock) if v.heat_sharing == "effusivity" else 0.5,
                     contact_conductance=v.contact_conductance, convection=v.convection, ambient=v.ambient_temperature,
-                    rock_conductance=rock_share, surface_period=v.surface_period)
+                    rock_conductance=self._bond_conductance(v.rock_conductivity, self._fitted_to_rock),
+                    tool_conductance=self._bond_conductance(v.tool_conductivity, lambda: tool.conductance),
+                    conduction=v.conduction, root_temperature=v.root_temperature if v.root == "fixed" else None,
+                    surface_period=v.surface_period, speed_up=lambda: self.speed_up)
+
+    def _fitted_to_rock(self):
+        return calibrated_conductance(positions=self.rock.positions, edges=self.rock.pairs, conductance=1.0,
+                                      conductivity=self.v.rock_conductivity)[0]
+
+    def _bond_conductance(self, conductivity, fitted):
+        """W/K of each contact of a packing: as its material, or as a bar between two centres (P 64-65, M 11.1)."""
+        if self.v.bond_conductance == "packing":
+            return fitted()
+        return bar_conductance(conductivity, 1.0) * (0.5 if self.v.bond_conductance == "M" else 1.0)
 
     def _periods(self):
         """{engine: steps between visits}."""
-        v, dt = self.v, self.time_step
+        v = self.v
         return {"bonds": 1, "tool_contact": v.sampling_period, "rock_friction": v.rock_sampling_period,
-                "wear": v.wear_period, "heat": max(1, round(v.heat_period / dt)),
+                "wear": v.wear_period, "heat": max(1, self._steps(v.heat_period)),
                 "letting_go": 200, "background_damping": v.damping_period, "watch": 200,
-                "recorder": max(1, round(v.record_period / dt))}
+                "recorder": max(1, self._steps(v.record_period))}
 
     def _connect(self):
         super()._connect()

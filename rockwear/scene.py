@@ -153,13 +153,20 @@ class Scene:
 
     looking = {"bonds", "rock_friction"}
     """Engines that look at the forces of this step and come before the integrator; the others come after it."""
+    speed_up = 1.0
+    """Seconds of the process in a second of the mechanics (M 12.1: "mechanical process scaled"). All times of a scene
+    but its time step are those of the process."""
 
     def _plan(self, stages):
         """stages: {name: s}."""
         # Chunks between canonical points depend on the scene alone, so that every run of it passes the same points.
         self.chunk = int(min(2000, max(100, 12_000_000 // len(self.rock.pairs))))
-        self.stages = [(name, max(1, round(seconds / self.time_step))) for name, seconds in stages.items()]
+        self.stages = [(name, max(1, self._steps(seconds))) for name, seconds in stages.items()]
         self.stage, self.clock = 0, 0.0
+
+    def _steps(self, seconds):
+        """Steps in so many seconds of the process."""
+        return round(seconds / (self.time_step * self.speed_up))
 
     def _enlist(self, *live):
         """Make these engines the scene's own; None stands for one that it does not need."""
@@ -192,7 +199,7 @@ class Scene:
     @property
     def time(self):
         """Simulated seconds over all stages."""
-        return self.clock + self.step * self.time_step
+        return self.clock + self.step * self.time_step * self.speed_up
 
     @property
     def finished(self):

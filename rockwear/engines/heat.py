@@ -10,51 +10,62 @@ from . import Engine
 class Heat(Engine):
     """One HeatNetwork over rock particles (nodes 0..n-1) and tool particles (n..n+m-1), staggered with the mechanics.
 
-    Friction heat chi W is shared between tool and rock by effusivity, W being the work of irreversible slip (P 36-41);
-    between rock particles in halves. A tool and a rock particle that touch exchange h A (T_tool - T_rock) (P 66) for
-    the seconds they touched, A = 2 r b of the tool particle, as the exact exchange of the two lumps, which cannot
-    overshoot. Convection acts on the free surface (P 42), found anew when bonds have broken or particles have gone.
+    Friction heat chi W is shared between tool and rock, W being the work of irreversible slip (P 36-41); between rock
+    particles in halves. A tool and a rock particle that touch exchange h A (T_tool - T_rock) (P 66) for the seconds
+    they touched, A = 2 r b of the tool particle, as the exact exchange of the two lumps, which cannot overshoot.
+    Convection acts on the free surface (P 42), found anew when bonds have broken or particles have gone.
 
-    network: kernels.conduction.HeatNetwork; parts: dict of the scene's bonds, rock_friction, tool_contact engines;
-    rock, tool: the specimen and the tool; settings: the scene's heat parameters.
+    network: kernels.conduction.HeatNetwork; bonds, rock_friction, tool_contact: engines; rock, tool: the specimen and
+    the tool; tool_share: part of the heat of tool-rock friction that the tool takes; rock_conductance,
+    tool_conductance: W/K of each contact within rock and tool; conduction: False leaves all heat where it arises;
+    root_temperature: K at which the shank holds the tool's mounted particles, None where they are insulated;
+    speed_up: a function giving the seconds of the process in a second of the mechanics (M 12.1), in which heat flows.
     """
 
     name = "heat"
 
     def __init__(self, *, network, bonds, rock_friction, tool_contact, rock, tool, heat_fraction, tool_share,
-                 contact_conductance, convection, ambient, rock_conductance, surface_period):
+                 contact_conductance, convection, ambient, rock_conductance, tool_conductance, surface_period,
+                 conduction=True, root_temperature=None, speed_up=lambda: 1.0):
         super().__init__()
         self.network, self.bonds, self.rock_friction, self.tool_contact = network, bonds, rock_friction, tool_contact
         self.rock, self.tool, self.n = rock, tool, rock.count
-        self.heat_fraction, self.tool_share = heat_fraction, tool_share
+        self.heat_fraction, self.tool_share, self.conduction = heat_fraction, tool_share, conduction
         self.contact_conductance, self.convection, self.ambient = contact_conductance, convection, ambient
-        self.rock_conductance, self.surface_period = rock_conductance, surface_period
-        self.carried_away = self.replaced = 0.0
+        self.rock_conductance, self.tool_conductance = rock_conductance, tool_conductance
+        self.surface_period, self.root_temperature, self.speed_up = surface_period, root_temperature, speed_up
+        self.carried_away = self.replaced = self.renewed = 0.0
         self.surface_time = -math.inf
         self.clock = 0.0
         self.exchanged_with = {}
+        self.tool_capacity = network.capacity[self.n:]
+        self.start_average()
 
     def act(self):
-        elapsed = self.elapsed()
+        elapsed = self.elapsed() * self.speed_up()
         self.clock += elapsed
+        self.averaged["seconds"] += elapsed
         heat = self._sources()
         gone = ~self.network.present
         # Heat meant for a particle that has gone since goes with it.
         self.carried_away += float(heat[gone].sum())
         heat[gone] = 0.0
         self.network.add_heat(heat)
-        self.network.advance(elapsed)
-        if self.clock - self.surface_time >= self.surface_period:
-            self.find_surfaces()
+        if self.conduction:
+            self.network.advance(elapsed)
+            if self.clock - self.surface_time >= self.surface_period:
+                self.find_surfaces()
 
     def _sources(self):
         tool_work, rock_work, touching = self.tool_contact.take_heating()
         rock = (1 - self.tool_share) * rock_work + self.rock_friction.take_work()
         heat = self.heat_fraction * np.concatenate([rock, self.tool_share * tool_work])
+        self.averaged["friction_heat"] += heat[self.n:]
         self.exchanged_with = touching
-        if touching:
+        if touching and self.conduction:
             pairs = np.array(sorted(touching))
-            self._exchange(heat, self.n + pairs[:, 0], pairs[:, 1], np.array([touching[i, j] for i, j in pairs.tolist()]))
+            seconds = self.speed_up() * np.array([touching[i, j] for i, j in pairs.tolist()])
+            self._exchange(heat, self.n + pairs[:, 0], pairs[:, 1], seconds)
         return heat
 
     def _exchange(self, heat, tool, rock, seconds):
@@ -63,6 +74,8 @@ class Heat(Engine):
         tool, rock, seconds = tool[there], rock[there], seconds[there]
         lumped = capacity[tool] * capacity[rock] / (capacity[tool] + capacity[rock])
         conductance = self.contact_conductance * 2 * self.tool.radii[tool - self.n]
+        for name, weight in (("contact", 1.0), ("contact_kelvin", temperature[rock])):
+            self.averaged[name] += np.bincount(tool - self.n, conductance * seconds * weight, self.tool.count)
         moved = (temperature[tool] - temperature[rock]) * lumped * -np.expm1(-conductance * seconds / lumped)
         heat += np.bincount(rock, moved, heat.size) - np.bincount(tool, moved, heat.size)
 
@@ -76,7 +89,7 @@ class Heat(Engine):
         tool_pairs = tool_pairs[self.tool.erosion.alive[tool_pairs].all(axis=1)] + self.n
         edges = np.concatenate([bonded, np.array(loose, int).reshape(-1, 2), tool_pairs])
         conductance = np.concatenate([np.full(len(bonded) + len(loose), self.rock_conductance),
-                                      np.full(len(tool_pairs), self.tool.conductance)])
+                                      np.full(len(tool_pairs), self.tool_conductance)])
         self.network.rewire(edges=edges, conductance=conductance)
         in_contact = np.zeros(self.n + self.tool.count, bool)
         for index, rock in self.exchanged_with:
@@ -106,6 +119,31 @@ class Heat(Engine):
         self.replaced += float(change.sum())
         self.network.add_heat(change)
 
+    def renew_tool(self, temperature):
+        """A whole tool of (m,) K in place of the one that is there; what it holds more or less is booked apart."""
+        before, state = self.network.heat_content, self.network.state()
+        state["capacity"][self.n:], state["temperature"][self.n:] = self.tool_capacity, temperature
+        self.network.restore(state)
+        self.renewed += self.network.heat_content - before
+        self._hold_root()
+
+    def _hold_root(self):
+        if self.root_temperature is not None:
+            self.network.fix(self.n + np.flatnonzero(self.tool.mounted), self.root_temperature)
+
+    def start_average(self):
+        """Forget what `averages` has gathered."""
+        self.averaged = {"seconds": 0.0, **{name: np.zeros(self.tool.count)
+                                            for name in ("friction_heat", "contact", "contact_kelvin")}}
+
+    def averages(self):
+        """Of each tool particle since `start_average`: friction heat, W; conductance to the rock it touched, W/K; and
+        the rock's temperature there, K (that of the air where it touched none); three arrays (m,)."""
+        found, seconds = self.averaged, self.averaged["seconds"]
+        touched = found["contact"] > 0
+        rock = np.divide(found["contact_kelvin"], found["contact"], out=np.full(self.tool.count, self.ambient), where=touched)
+        return found["friction_heat"] / seconds, found["contact"] / seconds, rock
+
     def tool_temperature(self):
         """(m,) K of the tool's particles."""
         return self.network.temperature[self.n:]
@@ -116,25 +154,30 @@ class Heat(Engine):
         book["generated"] += self.carried_away - self.replaced
         book["removed"] -= self.carried_away
         book["rock_replaced"] = self.replaced
+        book["tool_renewed"] = self.renewed
         book["stored"] = self.network.heat_content - self.initial_content
         book["residual"] = book["stored"] - math.fsum(v for k, v in book.items() if k != "stored")
         return book
 
     def begin(self):
         """Take stock before the first step."""
-        self.initial_content = self.network.heat_content
-        self.find_surfaces()
+        self._hold_root()
+        self.initial_content = self.network.heat_content - self.network.balance["into_fixed"]
+        if self.conduction:
+            self.find_surfaces()
 
     def state(self):
         network = self.network.state()
         return {"network": network, "carried_away": self.carried_away, "replaced": self.replaced, "clock": self.clock,
-                "surface_time": self.surface_time, "initial_content": self.initial_content,
+                "surface_time": self.surface_time, "initial_content": self.initial_content, "renewed": self.renewed,
+                "averaged": {name: np.copy(value) for name, value in self.averaged.items()},
                 "touched": np.array(sorted(self.exchanged_with), int).reshape(-1, 2)}
 
     def restore(self, state):
         self.network.restore(state["network"])
-        for name in ("carried_away", "replaced", "clock", "surface_time", "initial_content"):
+        for name in ("carried_away", "replaced", "renewed", "clock", "surface_time", "initial_content"):
             setattr(self, name, float(state[name]))
+        self.averaged = {name: np.copy(value) for name, value in state["averaged"].items()}
         self.exchanged_with = {(int(i), int(j)): 0.0 for i, j in state["touched"].tolist()}
 
     def log(self):
