@@ -10,7 +10,7 @@ from yade import O, utils
 from . import scene, vtk
 from .engines.bonds import Bonds, Crack, LettingGo, RockFriction
 from .engines.heat import Heat
-from .engines.motion import BackgroundDamping, Foresight
+from .engines.motion import BackgroundDamping, Foresight, Guide
 from .engines.record import Recorder, RunEnded, Watch
 from .engines.wear import ToolContact, Wear
 from .kernels.archard import BRINELL, KELVIN, MET71, MET91, Hardness
@@ -18,6 +18,7 @@ from .kernels.bond_laws import LINEAR_LAWS, linear_law
 from .kernels.checks import require
 from .kernels.conduction import HeatNetwork, bar_conductance, calibrated_conductance, effusivity, effusivity_share
 from .kernels.outline import read_outline, tooth
+from .kernels.rigid_motion import Straight
 from .kernels.stability import critical_time_step
 from .kernels.wear_laws import LAWS, wear_law
 from .materials import Material
@@ -26,6 +27,8 @@ from .rock import Specimen
 from .tool import Tool
 
 HARDNESS = {"MET71": MET71, "MET91": MET91}
+GUIDE_PERIOD = 100
+"""Steps between the corners of a curved path."""
 
 PARAMETERS = [
     # rock
@@ -134,7 +137,6 @@ class Cutting(scene.Scene):
         self.values = values
         v = self.v = SimpleNamespace(**values)
         self.speed_up = v.speed_up
-        self.velocity = np.array([v.velocity * v.speed_up, 0.0])
         require(v.radius_max >= v.radius_min, "radius_max", v.radius_max, f"at least radius_min = {v.radius_min:g}", "m")
         require(v.tool_radius_max >= v.tool_radius_min, "tool_radius_max", v.tool_radius_max,
                 f"at least tool_radius_min = {v.tool_radius_min:g}", "m")
@@ -163,6 +165,7 @@ class Cutting(scene.Scene):
         self.rock.support("left", "right", below=v.height - 3 * v.depth_of_cut)
         self.tool = Tool(vertices=vertices, radius_min=v.tool_radius_min, radius_max=v.tool_radius_max, seed=v.seed,
                          removal=v.removal, material=self.tool_material)
+        self.motion = self._motion(v)
         self._choose_time_step(v)
         self._plan({"start-up": v.start_up, **{f"cycle {n + 1}": v.cycle_time for n in range(v.cycles)}})
         self.book = {"kinetic": 0.0, "elastic": 0.0, "contact_elastic": 0.0}
@@ -194,6 +197,14 @@ class Cutting(scene.Scene):
             return Hardness.constant(table(v.hardness_temperature))
         return Hardness(table.kelvin - KELVIN, table.pascal / BRINELL)
 
+    def _motion(self, v):
+        x = -v.approach - self.tool.foremost(below=v.depth_of_cut + 2 * v.radius_max)
+        return Straight(start=(x, v.height - v.depth_of_cut), velocity=(v.velocity * v.speed_up, 0.0))
+
+    def _path_time(self):
+        """Seconds along the tool's path; the rock put back before a cycle puts back this clock too."""
+        return (O.iter - self.path_start) * self.time_step
+
     def _choose_time_step(self, v):
         rock = self.rock
         common = dict(positions=rock.positions, radii=rock.radii, masses=rock.masses, inertias=rock.inertias,
@@ -224,10 +235,9 @@ class Cutting(scene.Scene):
         scene.put_loop(kn=v.kn, kt=v.kt, mu=v.mu, tool=(v.tool_kn, v.tool_kt, v.tool_mu))
         self._make_engines()
         scene.make_bonds(rock, self.bonds)
-        self.bodies.offset = np.array([-v.approach, v.height - v.depth_of_cut])
-        self.bodies.offset[0] -= self.tool.foremost(below=v.depth_of_cut + 2 * v.radius_max)
         self.bodies.add(sorted(self.tool.erosion.skin))
         self._hang_in()
+        self.path_start = O.iter
         if self.heat:
             self.heat.begin()
         self.base = self._stored_energy()
@@ -235,12 +245,12 @@ class Cutting(scene.Scene):
 
     def _make_engines(self):
         v, rock, tool = self.v, self.rock, self.tool
-        self.bodies = scene.ToolBodies(tool, self.velocity)
+        self.bodies = scene.ToolBodies(tool, self.motion)
         self.bonds = Bonds(pairs=rock.pairs, law=self.law, strength_factor=rock.strength_factor, clock=lambda: self.time)
+        guide = Guide(bodies=self.bodies, clock=self._path_time, period=GUIDE_PERIOD) if self.motion.spin else None
         motion = Foresight(masses=rock.masses, inertias=rock.inertias, radii=rock.radii, held=rock.supported)
         self.rock_friction = RockFriction(bonds=self.bonds, motion=motion)
-        self.contact = ToolContact(tool=self.bodies, motion=motion, velocity=self.velocity,
-                                   needs=self.wear_law.needs)
+        self.contact = ToolContact(tool=self.bodies, motion=motion, needs=self.wear_law.needs)
         self.wear = Wear(contact=self.contact, erosion=tool.erosion, tool=self.bodies, law=self.wear_law,
                          hardness=self.hardness, temperature=self._tool_temperature, on_removal=self._on_removal)
         self.heat = self._heat() if v.heat else None
@@ -248,8 +258,8 @@ class Cutting(scene.Scene):
         self.recorder = Recorder([self._log, self.wear.log, self.bonds.log] + ([self.heat.log] if self.heat else []))
         kick = 0.5 * float(rock.masses.max()) * (v.velocity * v.speed_up)**2
         self.watch = Watch(work=lambda: self.contact.work_done, floor=50 * kick)
-        self._enlist(self.bonds, self.contact, self.rock_friction, LettingGo(self.bonds), self.wear, self.heat,
-                     self.damping, self.recorder, self.watch)
+        self._enlist(self.bonds, self.contact, self.rock_friction, LettingGo(self.bonds), guide, self.wear,
+                     self.heat, self.damping, self.recorder, self.watch)
 
     def _heat(self):
         v, rock, tool = self.v, self.rock, self.tool
@@ -282,7 +292,7 @@ class Cutting(scene.Scene):
         v = self.v
         return {"bonds": 1, "tool_contact": v.sampling_period, "rock_friction": v.rock_sampling_period,
                 "wear": v.wear_period, "heat": max(1, self._steps(v.heat_period)),
-                "letting_go": 200, "background_damping": v.damping_period, "watch": 200,
+                "letting_go": 200, "guide": GUIDE_PERIOD, "background_damping": v.damping_period, "watch": 200,
                 "recorder": max(1, self._steps(v.record_period))}
 
     def _connect(self):
@@ -349,6 +359,7 @@ class Cutting(scene.Scene):
 
     def state(self):
         return {**super().state(), "book": self.book, "base": self.base, "bodies": self.bodies.state(),
+                "path_start": self.path_start,
                 "cracks": np.array(self.cracks_of_past_cycles, float).reshape(-1, len(Crack._fields)),
                 "start": getattr(self, "start", {})}
 
@@ -361,6 +372,7 @@ class Cutting(scene.Scene):
         if (directory / "start_up.yade.gz").exists():
             shutil.copy(directory / "start_up.yade.gz", folder)
         super().restore(state, directory, folder)
+        self.path_start = int(state["path_start"])
         self.book = {name: float(value) for name, value in state["book"].items()}
         self.base = {name: float(value) for name, value in state["base"].items()}
         self.start = state["start"] if "start" in state else {}
@@ -397,8 +409,10 @@ class Cutting(scene.Scene):
         return {"initial": self.tool.area * self.tool.density, **{k: v * self.tool.density for k, v in book.items()}}
 
     def _log(self):
-        impulse = self.contact.take_impulse()
         elapsed = self.recorder.elapsed()
+        # Along and across the direction in which the tool looks.
+        self.bodies.connect()
+        impulse = self.contact.take_impulse() @ self.bodies.pose.rotation
         force = impulse / elapsed if elapsed else impulse
         return {"time": (self.time, "s"), "stage": (self.stage, "-"), "cutting_force": (-force[0], "N/m"),
                 "thrust_force": (force[1], "N/m"), "tool_work": (self.contact.work_done, "J/m"),
@@ -422,7 +436,7 @@ class Cutting(scene.Scene):
         self.bodies.connect()
         return {"time": self.time, "stage": self.stage, "rock_positions": rock.current_positions(),
                 "broken_bonds": broken, "status": self.bonds.status, "temperature": temperature,
-                "tool_offset": self.bodies.offset, "alive": erosion.alive,
+                "tool_offset": self.bodies.pose.offset, "tool_turn": self.bodies.pose.turn, "alive": erosion.alive,
                 "worn_depth": erosion.stored / (2 * self.tool.radii), "skin": np.array(sorted(erosion.skin), int)}
 
     def write_vtk(self, folder, number):
@@ -435,7 +449,7 @@ class Cutting(scene.Scene):
             fields["temperature"] = shot["temperature"][:rock.count]
             worn["temperature"] = shot["temperature"][rock.count:][alive]
         vtk.write(folder / f"rock.{number:04d}.vtk", shot["rock_positions"], fields)
-        vtk.write(folder / f"tool.{number:04d}.vtk", tool.positions[alive] + shot["tool_offset"], worn)
+        vtk.write(folder / f"tool.{number:04d}.vtk", self.bodies.pose.of(tool.positions[alive]), worn)
 
     def cracks(self):
         return self.cracks_of_past_cycles + self.bonds.cracks

@@ -6,10 +6,12 @@ from yade import (Bo1_Sphere_Aabb, ForceResetter, FrictMat, FrictViscoMat, Ig2_S
                   InsertionSortCollider, InteractionLoop, Ip2_FrictMat_FrictMat_FrictPhys,
                   Ip2_FrictMat_FrictViscoMat_FrictViscoPhys, Ip2_JCFpmMat_JCFpmMat_JCFpmPhys, JCFpmMat,
                   Law2_ScGeom_FrictPhys_CundallStrack, Law2_ScGeom_FrictViscoPhys_CundallStrackVisco,
-                  Law2_ScGeom_JCFpmPhys_JointedCohesiveFrictionalPM, MatchMaker, NewtonIntegrator, O, utils)
+                  Law2_ScGeom_JCFpmPhys_JointedCohesiveFrictionalPM, MatchMaker, NewtonIntegrator, O, Quaternion,
+                  utils)
 
 from . import engines
 from .engines.bonds import Crack
+from .kernels.rigid_motion import Pose
 
 ROCK_MASK, TOOL_MASK = 1, 3
 """Bodies meet where masks share a bit; bit 2 is avoided within the tool."""
@@ -89,34 +91,66 @@ def finite_disc(position, radius, *, material, mask, mass, inertia):
 
 
 class ToolBodies:
-    """The tool's skin in YADE: only these particles take part in contact detection.
+    """The tool's skin in YADE, led along a motion: only these particles take part in contact detection.
 
     They hold no mass: the tool is led, and no kinetic energy of it enters the audit.
+
+    tool: a tool.Tool; motion: of kernels.rigid_motion. `pose` is where the tool is, `velocities` {particle: (vx, vy)}
+    and `spin` (rad/s) are how YADE moves it in this step.
     """
 
-    def __init__(self, tool, velocity):
-        self.tool, self.velocity = tool, velocity
+    def __init__(self, tool, motion):
+        self.tool, self.motion = tool, motion
         self.count = tool.count
         self.body_of = {}
         self.ids = []
-        self.offset = np.zeros(2)
+        self.pose = motion.pose(0.0)
+        self.velocities, self.spin = {}, motion.spin
 
     def connect(self):
-        """Follow YADE: where the tool is now."""
+        """Follow YADE: where the tool is now, and how it moves."""
+        for index, body in self.body_of.items():
+            self.velocities[index] = tuple(O.bodies[body].state.vel)[:2]
         if self.body_of:
             index, body = next(iter(self.body_of.items()))
-            self.offset = np.array(O.bodies[body].state.pos)[:2] - self.tool.positions[index]
+            state = O.bodies[body].state
+            turned = Pose(np.zeros(2), 2 * math.atan2(state.ori[2], state.ori[3]))
+            self.pose = Pose(np.array(state.pos)[:2] - turned.of(self.tool.positions[[index]])[0], turned.turn)
+
+    def aim(self, time, period):
+        """Lead every particle along the chord from where it is to where the motion has it `period` s after `time`.
+
+        Between two visits a particle is off its path by at most v w period^2 / 8, and no error ever builds up.
+        """
+        goal = self.motion.pose(time + period)
+        for (index, body), (x, y) in zip(self.body_of.items(), goal.of(self.tool.positions[list(self.body_of)]).tolist()):
+            state = O.bodies[body].state
+            here = state.pos
+            velocity = self.velocities[index] = (x - here[0]) / period, (y - here[1]) / period
+            state.vel = (*velocity, 0.0)
 
     def add(self, indices):
         """Put particles `indices` of the tool into YADE, where the tool is now."""
         self.connect()
-        for index in indices:
-            body = finite_disc(self.tool.positions[index] + self.offset, float(self.tool.radii[index]), material="steel",
-                               mask=TOOL_MASK, mass=0.0, inertia=0.0)
-            body.state.blockedDOFs = "xyzXYZ"
-            body.state.vel = (*self.velocity, 0.0)
+        places = self.pose.of(self.tool.positions[np.asarray(indices, int)]).tolist()
+        origin, velocity = self._moving_point()
+        for index, (x, y) in zip(indices, places):
+            body = finite_disc((x, y), float(self.tool.radii[index]), material="steel", mask=TOOL_MASK, mass=0.0, inertia=0.0)
+            state = body.state
+            state.blockedDOFs = "xyzXYZ"
+            self.velocities[int(index)] = (velocity[0] - self.spin * (y - origin[1]),
+                                           velocity[1] + self.spin * (x - origin[0]))
+            state.vel, state.angVel = (*self.velocities[int(index)], 0.0), (0.0, 0.0, self.spin)
+            state.ori = Quaternion((0, 0, 1), self.pose.turn)
             self.body_of[int(index)] = O.bodies.append(body)
         self.ids = list(self.body_of.values())
+
+    def _moving_point(self):
+        """A point of the tool, m, and its velocity, m/s."""
+        if not self.body_of:
+            return self.pose.offset, self.motion.velocity(0.0)
+        index = next(iter(self.body_of))
+        return self.pose.of(self.tool.positions[[index]])[0], self.velocities[index]
 
     def erase(self, indices):
         """Take particles out of YADE. -> strain energy (J) of the contacts that vanish with them."""
@@ -126,20 +160,23 @@ class ToolBodies:
             body = self.body_of.pop(int(index), None)
             if body is None:
                 continue
+            del self.velocities[int(index)]
             energy += engines.contact_energy(O.interactions.withBody(body))
             O.bodies.erase(body)
         self.ids = list(self.body_of.values())
         return energy
 
     def state(self):
-        """Which body is which particle."""
-        return {"bodies": np.array(list(self.body_of.items()), int).reshape(-1, 2), "offset": self.offset.copy()}
+        """Which body is which particle, and where the tool is."""
+        return {"bodies": np.array(list(self.body_of.items()), int).reshape(-1, 2), "offset": self.pose.offset.copy(),
+                "turn": self.pose.turn}
 
     def restore(self, state):
-        """Take back what `state` gave."""
+        """Take back what `state` gave; `connect` finds the rest in YADE."""
         self.body_of = {int(i): int(body) for i, body in state["bodies"]}
         self.ids = list(self.body_of.values())
-        self.offset = state["offset"].copy()
+        self.pose = Pose(state["offset"].copy(), float(state["turn"]))
+        self.velocities = {}
 
 
 class Scene:

@@ -1,9 +1,27 @@
-"""Motion of the rock's particles: what the step to come will change, and background damping."""
+"""Motion: the tool led along its path, background damping of the rock, and what the step to come will change."""
 import math
 
 from yade import O, Vector3, utils
 
 from . import Engine
+
+
+class Guide(Engine):
+    """Leads a tool that turns along its path, chord by chord (a straight one needs no leading).
+
+    bodies: scene.ToolBodies; clock: a function giving the time (s) along the path that YADE's positions have now;
+    period: steps between visits.
+    """
+
+    name = "guide"
+
+    def __init__(self, *, bodies, clock, period):
+        super().__init__()
+        self.bodies, self.clock, self.period = bodies, clock, period
+
+    def act(self):
+        # This engine comes after the integrator: positions are already those of the next step.
+        self.bodies.aim(self.clock() + O.dt, self.period * O.dt)
 
 
 class BackgroundDamping(Engine):

@@ -11,20 +11,21 @@ from . import SLIDING, Engine, contact_energy, law_functor, yade_engine
 class ToolContact(Engine):
     """Samples the contacts of the tool's skin: force, friction work by particle, and who touches whom.
 
-    tool: the tool's bodies (see scene.ToolBodies); motion: engines.motion.Foresight of the rock; velocity: (2,) m/s;
+    tool: the tool's bodies (see scene.ToolBodies); motion: engines.motion.Foresight of the rock;
     needs: sums (force, exponent) of F^exponent times slip by tool particle that the wear law takes (kernels.wear_laws).
 
     The friction work since the last visit is exactly what YADE's law dissipated; |Ft| times slip of the contacts found
-    sliding now only says where it went, so that the shares add up to the whole. Tool work, F v dt, and the work of
-    the contact dashpots are sampled at each visit; a collision lasts about ten steps and does most of its work in the
-    first. Contacts are looked for only among those that the collider has found possible since it last ran.
+    sliding now only says where it went, so that the shares add up to the whole. Tool work, F v dt with the velocity of
+    the tool at the contact point, and the work of the contact dashpots are sampled at each visit; a collision lasts
+    about ten steps and does most of its work in the first. Contacts are looked for only among those that the collider
+    has found possible since it last ran.
     """
 
     name = "tool_contact"
 
-    def __init__(self, *, tool, motion, velocity, needs=(WORK,)):
+    def __init__(self, *, tool, motion, needs=(WORK,)):
         super().__init__()
-        self.tool, self.motion, self.velocity = tool, motion, np.asarray(velocity, float)
+        self.tool, self.motion = tool, motion
         particles = len(motion.per_mass)
         self.tool_work = np.zeros(tool.count)
         self.rock_work = np.zeros(particles)
@@ -47,6 +48,10 @@ class ToolContact(Engine):
                 first = interaction.id1 == body
                 self.possible.append((interaction, index, interaction.id2 if first else interaction.id1, first))
 
+    def forget_erased(self):
+        """Contacts of erased bodies, which still look real, are not sampled any more."""
+        self.possible = [contact for contact in self.possible if contact[1] in self.tool.body_of]
+
     def act(self):
         elapsed = self.elapsed()
         if self.collider.numAction != self.collided:
@@ -66,7 +71,13 @@ class ToolContact(Engine):
         x, y = (normal[0] + shear[0]) * sign, (normal[1] + shear[1]) * sign
         self.impulse[0] += x
         self.impulse[1] += y
-        self.work_done -= x * self.velocity[0] + y * self.velocity[1]
+        vx, vy = self.tool.velocities[index]
+        if self.tool.spin:
+            # The contact point turns with the tool about its particle's centre.
+            geom = interaction.geom
+            arm = self.tool.spin * (self.tool.tool.radii[index] - 0.5 * geom.penetrationDepth) * (1 if tool_first else -1)
+            vx, vy = vx - arm * geom.normal[1], vy + arm * geom.normal[0]
+        self.work_done -= x * vx + y * vy
         self.touching[index, rock] = self.touching.get((index, rock), 0.0) + elapsed
         if phys.cn > 0:
             dashpot = phys.normalViscous
@@ -173,6 +184,7 @@ class Wear(Engine):
         self.erosion.drop(loose)
         gone = removed + loose
         self.contact_energy_removed += self.tool.erase(gone)
+        self.contact.forget_erased()
         self.tool.add([i for i in uncovered if self.erosion.alive[i]])
         self.on_removal(gone)
 

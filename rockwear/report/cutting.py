@@ -8,6 +8,7 @@ from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import LinearSegmentedColormap, LogNorm, to_rgba
 from matplotlib.patches import Patch
 
+from ..kernels.rigid_motion import Pose
 from . import shapes
 from .page import Section, image, machine_tiles, number, percent, quantity, table, tiles, words
 from .plots import (MM, MS, books, canvas, discs, frame, mark_stages, running_mean, save, spread, stage_name)
@@ -106,10 +107,15 @@ def stage_table(run):
 
 # ---- pieces of pictures
 
+def pose(shot):
+    """Where the tool is now."""
+    return Pose(shot["tool_offset"], float(shot.get("tool_turn", 0.0)))
+
+
 def moved_tool(run, shot):
     """(positions of the living tool particles where the tool is now, their numbers)."""
     alive = np.flatnonzero(shot["alive"])
-    return run.model["tool_positions"][alive] + shot["tool_offset"], alive
+    return pose(shot).of(run.model["tool_positions"][alive]), alive
 
 
 def tool_outlines(run, shot):
@@ -153,7 +159,7 @@ class CutPicture:
         self.rock.set_offsets(MM * shot["rock_positions"])
         self.rock.set_facecolors(rock_colours(self.run, shot))
         self.cracks.set_segments(crack_lines(self.run, shot))
-        self.tool.set_verts([MM * (loop + shot["tool_offset"]) for loop in tool_outlines(self.run, shot)])
+        self.tool.set_verts([MM * pose(shot).of(loop) for loop in tool_outlines(self.run, shot)])
 
 
 def cut_view(run):
@@ -209,7 +215,7 @@ def set_up(run):
     skin = np.isin(alive, shot["skin"])
     discs(axes, positions, model["tool_radii"][alive],
           facecolors=np.where(skin[:, None], to_rgba(SKIN), to_rgba(PALE)))
-    outline = MM * (model["outline"] + shot["tool_offset"])
+    outline = MM * pose(shot).of(model["outline"])
     left, top = min(0, outline[:, 0].min()), max(height, outline[:, 1].max())
     depth = MM * run.parameter("depth_of_cut", math.nan)
     if math.isfinite(depth):
@@ -277,7 +283,7 @@ def temperature(run):
     for whole, near, k, shot in zip(panels[::2], panels[1::2], shown, shots):
         for axes in (whole, near):
             painted = paint_temperature(axes, run, shot, cold, norm)
-        outline = MM * (run.model["outline"] + shot["tool_offset"])
+        outline = MM * pose(shot).of(run.model["outline"])
         x, y = outline[np.argmin(outline[:, 1])]
         frame(whole, (-0.25 * width, 1.03 * width, 0, max(outline[:, 1].max(), height) + 3), moment(run, k))
         frame(near, (x - 15, x + 15, y - 8, y + 22), f"at the tip: {hottest(run, shot)}")
