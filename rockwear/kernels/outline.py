@@ -11,6 +11,7 @@ import numpy as np
 from rockwear.kernels.checks import ParameterError, finite, not_negative, positive, require
 
 ARC_CHORD_ERROR = 1e-3  # sagitta of the chords that replace an arc, as a fraction of its radius
+CORNER = math.radians(10)  # a boundary that turns by more at one vertex has a corner there
 CHUNK = 2_000_000  # point-edge pairs looked at together: some 100 MB of temporaries
 
 
@@ -89,6 +90,18 @@ def check_polygon(polygon, name="polygon"):
 def _chunks(points, edges):
     step = max(1, CHUNK // edges)
     return [slice(first, first + step) for first in range(0, len(points), step)]
+
+
+def sides(polygon):
+    """Runs of edges between the corners of a polygon: [(start (e, 2), edge (e, 2))] in m; one run without a corner."""
+    p = np.asarray(polygon, dtype=float)
+    edge = np.roll(p, -1, axis=0) - p
+    heading = np.arctan2(edge[:, 1], edge[:, 0])
+    turn = np.abs(np.angle(np.exp(1j * (heading - np.roll(heading, 1)))))
+    corners = np.flatnonzero(turn > CORNER)
+    first = corners[0] if len(corners) else 0
+    order = np.roll(np.arange(len(p)), -first)
+    return [(p[run], edge[run]) for run in np.split(order, corners[1:] - first)]
 
 
 def nearest_on_edges(points, start, edge):

@@ -31,7 +31,6 @@ SHORTEST_STEP = 1e-12  # below it the energy changes by rounding only
 MEMORY = 10  # steps that L-BFGS remembers
 MAX_IMBALANCE = 0.05  # jammed packings end near 1e-4, marginal ones at 0.02, loose ones from 0.055 up
 REGRADINGS = 2
-CORNER = math.radians(10)  # a boundary that turns by more at one vertex has a corner there
 MAX_PARTICLES = 5_000_000
 ROOM = 3  # the container's inscribed radius, in largest particle radii, that leaves something to be called a packing
 POROSITY_LIMITS = {2: (0.02, 0.20), 3: (0.20, 0.42)}
@@ -167,14 +166,7 @@ class _Polygon:
         self.volume = outline.area(vertices)
         trial = self.low + qmc.Halton(2, scramble=False).random(4096) * (self.high - self.low)
         self.inradius = self.depth(trial).max()
-
-        edge = np.roll(vertices, -1, axis=0) - vertices
-        heading = np.arctan2(edge[:, 1], edge[:, 0])
-        turn = np.abs(np.angle(np.exp(1j * (heading - np.roll(heading, 1)))))
-        corners = np.flatnonzero(turn > CORNER)
-        first = corners[0] if len(corners) else 0
-        order = np.roll(np.arange(len(vertices)), -first)
-        self.sides = [(vertices[run], edge[run]) for run in np.split(order, corners[1:] - first)]
+        self.sides = outline.sides(vertices)
 
     def depth(self, points):
         """Distance (n,) from the boundary, negative outside."""
