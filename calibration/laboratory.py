@@ -29,6 +29,7 @@ PARAMETERS = [p for p in cutting.parameters(time_step_fraction=0.6) if p.name in
     Parameter("test", "compression", "", choice("compression", "tension"), "direction of loading", "M 5.1"),
     Parameter("speed", 0.1, "m/s", above_zero, "of each platen", "measured, see UniaxialTest; M 5.1 has 0.001"),
     Parameter("platens", "smooth", "", choice("smooth", "rough"), "rough: ends held across and against turning"),
+    Parameter("rotation", "free", "", choice("free", "blocked"), "of all discs; blocked: no disc ever turns"),
     Parameter("grip", 0.0, "m", number(0), "discs with their centres so near an end are led; 0: a largest diameter"),
     Parameter("damping", 0.3, "", number(0, 0.95), "Cundall's non-viscous damping", "measured, see UniaxialTest"),
     Parameter("gauge", 0.5, "", number(0.05, 1), "middle part of length and height in which strain is measured"),
@@ -139,8 +140,9 @@ class UniaxialTest(scene.Scene):
         for i, (vx, vy, led) in enumerate(zip(along.tolist(), across.tolist(), self.led)):
             state = O.bodies[i].state
             state.vel = (vx, vy, 0)
+            state.blockedDOFs = ("x" if led else "") + ("y" if led and rough else "") + "zXY" + (
+                "Z" if v.rotation == "blocked" or led and rough else "")
             if led:
-                state.blockedDOFs = "xyzXYZ" if rough else "xzXY"
                 # YADE would count what it damps of a motion that is prescribed.
                 state.isDamped = False
 
@@ -148,7 +150,8 @@ class UniaxialTest(scene.Scene):
         v, rock = self.v, self.rock
         self.bonds = Bonds(pairs=rock.pairs, law=self.law, strength_factor=rock.strength_factor,
                            clock=lambda: self.time)
-        motion = Foresight(masses=rock.masses, inertias=rock.inertias, radii=rock.radii, held=self.led)
+        inertias = np.full(rock.count, np.inf) if v.rotation == "blocked" else rock.inertias
+        motion = Foresight(masses=rock.masses, inertias=inertias, radii=rock.radii, held=self.led)
         self.rock_friction = RockFriction(bonds=self.bonds, motion=motion)
         self.platens = Platens(left=self.left.tolist(), right=self.right.tolist(), velocity=self.sign * v.speed)
         self.recorder = Recorder([self._log, self.bonds.log])

@@ -78,6 +78,13 @@ def test_the_rock_is_weaker_in_tension_and_as_stiff(compressed, tmp_path):
     assert value(pulled, "youngs_modulus") == pytest.approx(value(compressed, "youngs_modulus"), rel=0.03)
 
 
+def test_discs_that_cannot_turn_make_the_rock_stiffer(compressed, tmp_path):
+    held = laboratory(tmp_path / "out", rotation="blocked", strain_max=1e-3)
+    assert held.code == 0, held.stderr
+    assert value(held, "youngs_modulus") > 1.02 * value(compressed, "youngs_modulus")
+    assert abs(held.summary["audits"]["energy"]["residual"]) < 0.01 * held.summary["audits"]["energy"]["platen_work"]
+
+
 @pytest.mark.parametrize("law, softer", [("damage", 2e9), ("plastic", 2e9)])
 def test_softening_bonds_make_the_rock_stronger(tmp_path, law, softer):
     steep, gentle = (laboratory(tmp_path / f"{H:g}", test="tension", law=law, H=H) for H in (1e12, softer))
@@ -98,6 +105,7 @@ def test_stopped_and_resumed_equals_never_stopped(compressed, tmp_path):
 @pytest.mark.parametrize("values, words", [
     ({"speed": 0}, "speed = 0 m/s: must be greater than 0"),
     ({"test": "shear"}, "test = shear: must be one of compression, tension"),
+    ({"rotation": "held"}, "rotation = held: must be one of free, blocked"),
     ({"kn": -1}, "kn = -1 N/m: must be greater than 0"),
     ({"grip": 0.03}, "grip = 0.03 m: must be less than half the width 0.04"),
     ({"grip": 1e-5}, "grip = 1e-05 m: must be deep enough to hold a disc at each end"),
