@@ -197,7 +197,7 @@ class Scene:
     def _plan(self, stages):
         """stages: {name: s}."""
         # Chunks between canonical points depend on the scene alone, so that every run of it passes the same points.
-        self.chunk = int(min(2000, max(100, 12_000_000 // len(self.rock.pairs))))
+        self.chunk = int(min(2000, max(100, 12_000_000 // max(1, len(self.rock.pairs)))))
         self.stages = [(name, max(1, self._steps(seconds))) for name, seconds in stages.items()]
         self.stage, self.clock = 0, 0.0
 
@@ -263,6 +263,9 @@ class Scene:
         """
         self.bonds.let_go()
         self.rock_friction.find_contacts()
+        self._fresh_bounds()
+
+    def _fresh_bounds(self):
         O.interactions.eraseNonReal()
         collider = engines.yade_engine(InsertionSortCollider)
         collider.doSort = True

@@ -5,7 +5,7 @@ and the table of live engines below finds it.
 """
 from time import perf_counter
 
-from yade import InteractionLoop, O, PyRunner
+from yade import InteractionLoop, O, PyRunner, Sphere
 
 _live = {}
 failures = []
@@ -102,7 +102,10 @@ def contact_energy(interactions):
     energy = 0.0
     for i in interactions:
         first, second = O.bodies[i.id1], O.bodies[i.id2]
-        # A loaded scene has no penetrationDepth before its first step.
-        overlap = first.shape.radius + second.shape.radius - (second.state.pos - first.state.pos).norm()
+        if isinstance(first.shape, Sphere) and isinstance(second.shape, Sphere):
+            # A loaded scene has no penetrationDepth before its first step.
+            overlap = first.shape.radius + second.shape.radius - (second.state.pos - first.state.pos).norm()
+        else:
+            overlap = i.geom.penetrationDepth
         energy += 0.5 * (i.phys.kn * max(overlap, 0.0)**2 + i.phys.shearForce.squaredNorm() / i.phys.ks)
     return energy

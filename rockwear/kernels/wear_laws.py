@@ -54,8 +54,12 @@ class WearLaw:
 
     def depth_per_k(self, test):
         """(m,) depth (m) that k = 1 gives in laboratory tests: s (p / H)^n, with p_T / mu for p in the friction forms."""
-        pressure = test.pressure if self.force == NORMAL else self.share * test.friction_stress / self.mu
-        return test.distance * (pressure / test.hardness)**self.exponent
+        pressure = test.pressure if self.force == NORMAL else test.friction_stress / self.mu
+        return test.distance * (self.share * pressure / test.hardness)**self.exponent
+
+    def rate(self, pressure, hardness):
+        """dw/ds (-) of a flat surface under a pressure (Pa) that slides with Coulomb's friction."""
+        return self.k * (self.share * pressure / hardness)**self.exponent
 
     def scaled(self, factor):
         """The same law with `factor` times its k: wear accelerated."""
@@ -140,6 +144,10 @@ class SumOfModes:
     def volume(self, slid, hardness, area):
         """Worn volume, m3, as WearLaw.volume."""
         return sum(mode.volume(slid, hardness, area) for mode in self.modes)
+
+    def rate(self, pressure, hardness):
+        """dw/ds (-), as WearLaw.rate."""
+        return sum(mode.rate(pressure, hardness) for mode in self.modes)
 
     def scaled(self, factor):
         """The same modes with `factor` times their k."""
