@@ -153,14 +153,9 @@ class WearTest(scene.Scene):
         self.recorder = Recorder([self._log])
         self._enlist(self.contact, self.wear, self.recorder, self.press)
 
-    def _hang_in(self):
-        super()._hang_in()
-        # The press is asked by removal, not by the clock.
-        O.engines = [e for e in O.engines if "'press'" not in getattr(e, "command", "")]
-
     def _periods(self):
         v = self.v
-        return {"tool_contact": 1, "wear": v.wear_period, "press": 10**9,
+        return {"tool_contact": 1, "wear": v.wear_period, "press": None,
                 "recorder": max(1, round(v.record_distance / v.acceleration / v.slip_step))}
 
     def _connect(self):

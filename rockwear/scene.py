@@ -184,8 +184,8 @@ class Scene:
 
     A scene sets `rock` (a Specimen) and `time_step` (s), and plans its stages. `build` fills YADE's scene;
     `_make_engines` makes `bonds`, `rock_friction`, `recorder` and lists all engines in `live`, in the order of their
-    visits; `_periods` says how often each is visited. `model`, `snapshot`, `progress`, `results` and `audits` say what a
-    run's folder shows.
+    visits; `_periods` says how often each is visited, None for one that others call. `model`, `snapshot`, `progress`,
+    `results` and `audits` say what a run's folder shows.
     """
 
     looking = {"bonds", "rock_friction"}
@@ -214,7 +214,7 @@ class Scene:
         """Hang the engines into YADE's loop, from now on with the scene's time step."""
         O.dt = self.time_step
         periods = self._periods()
-        names = [engine.name for engine in self.live]
+        names = [engine.name for engine in self.live if periods[engine.name]]
         before = engines.runners({name: periods[name] for name in names if name in self.looking})
         after = engines.runners({name: periods[name] for name in names if name not in self.looking})
         O.engines = O.engines[:-1] + before + O.engines[-1:] + after
