@@ -21,6 +21,8 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 
+from calibration import loading_speed  # noqa: E402
+
 ROOT = Path(__file__).resolve().parents[1]
 SAME_PATH = {"acceleration": 100, "start_up": 0.002, "cycles": 0, "snapshot_period": 1}
 UNBREAKABLE = {**SAME_PATH, "start_up": 2e-4, "Rn": 1e12, "Rt": 1e12, "approach": 1e-4}
@@ -173,8 +175,9 @@ def main(folder):
     result = {"sampling": sampling, "heat": heat, "step": step, "overhead": overhead,
               "seeds": {name: over_seeds(found) for name, found in seeds.items()}}
     (folder / "bench.json").write_text(json.dumps(result, indent=1))
-    (folder / "bench.md").write_text(markdown(result))
-    print(markdown(result))
+    text = "\n".join([markdown(result), *loading_speed.curve(folder)])
+    (folder / "bench.md").write_text(text)
+    print(text)
 
 
 if __name__ == "__main__":
