@@ -16,7 +16,7 @@ from .engines.wear import ToolContact, Wear
 from .kernels.archard import BRINELL, KELVIN, MET71, MET91, Hardness
 from .kernels.bond_laws import LINEAR_LAWS, linear_law
 from .kernels.checks import require
-from .kernels.conduction import HeatNetwork, bar_conductance, calibrated_conductance, effusivity, effusivity_share
+from .kernels.conduction import PATHS, HeatNetwork, calibrated_conductance, effusivity, effusivity_share, paths
 from .kernels.outline import read_outline, tooth
 from .kernels.rigid_motion import Straight
 from .kernels.stability import critical_time_step
@@ -94,8 +94,8 @@ PARAMETERS = [
     Parameter("heat_sharing", "effusivity", "", choice("effusivity", "equal"), "of friction heat between tool and rock",
               "P 39-41; M 4.5 shares equally"),
     Parameter("conduction", True, "", flag, "false: all heat stays with the particles that it arose at", "M 10.1"),
-    Parameter("bond_conductance", "packing", "", choice("packing", "P", "M"), "between particles: fitted to the packing, so "
-              "that it conducts as its material, or a bar between two centres", "ours; P 64-65: conductivity, M 11.1: half of it"),
+    Parameter("bond_conductance", "cells", "", choice(*PATHS), "between particles: by the faces of their cells; one "
+              "value fitted to the packing; or a bar between two centres", "ours; ours; P 64-65, M 11.1: half of P's"),
     Parameter("root", "insulated", "", choice("insulated", "fixed"), "the tool's particles held by the shank", "M 11.3"),
     Parameter("root_temperature", 293.15, "K", number(0), "of a fixed root", "M 11.3"),
     Parameter("contact_conductance", 1500.0, "W/m2K", number(0), "between tool and rock", "P 5.2"),
@@ -263,7 +263,8 @@ class Cutting(scene.Scene):
 
     def _heat(self):
         v, rock, tool = self.v, self.rock, self.tool
-        capacity = np.concatenate([rock.masses * v.rock_specific_heat, tool.masses * v.tool_specific_heat])
+        capacity = np.concatenate([self._capacity(rock, v.rock_specific_heat),
+                                   self._capacity(tool, v.tool_specific_heat)])
         temperature = np.repeat([v.rock_temperature, v.tool_temperature], [rock.count, tool.count])
         network = HeatNetwork(capacity=capacity, temperature=temperature, edges=np.empty((0, 2), int), conductance=0.0)
         e_tool, e_rock = (effusivity(m.conductivity, m.density, m.specific_heat)
@@ -272,8 +273,10 @@ class Cutting(scene.Scene):
                     rock=rock, tool=tool, heat_fraction=v.heat_fraction,
                     tool_share=effusivity_share(e_tool, e_rock) if v.heat_sharing == "effusivity" else 0.5,
                     contact_conductance=v.contact_conductance, convection=v.convection, ambient=v.ambient_temperature,
-                    rock_conductance=self._bond_conductance(v.rock_conductivity, self._fitted_to_rock),
-                    tool_conductance=self._bond_conductance(v.tool_conductivity, lambda: tool.conductance),
+                    rock_paths=paths(v.bond_conductance, v.rock_conductivity, pairs=rock.pairs,
+                                     cells=lambda: rock.cells, fitted=self._fitted_to_rock),
+                    tool_paths=paths(v.bond_conductance, v.tool_conductivity, pairs=tool.erosion.pairs,
+                                     cells=lambda: tool.cells, fitted=lambda: tool.conductance),
                     conduction=v.conduction, root_temperature=v.root_temperature if v.root == "fixed" else None,
                     surface_period=v.surface_period, speed_up=lambda: self.speed_up)
 
@@ -281,11 +284,10 @@ class Cutting(scene.Scene):
         return calibrated_conductance(positions=self.rock.positions, edges=self.rock.pairs, conductance=1.0,
                                       conductivity=self.v.rock_conductivity)[0]
 
-    def _bond_conductance(self, conductivity, fitted):
-        """W/K of each contact of a packing: as its material, or as a bar between two centres (P 64-65, M 11.1)."""
-        if self.v.bond_conductance == "packing":
-            return fitted()
-        return bar_conductance(conductivity, 1.0) * (0.5 if self.v.bond_conductance == "M" else 1.0)
+    def _capacity(self, body, specific_heat):
+        """(n,) J/K: of the cells where heat passes their faces, else of the particles' own masses as in the sources."""
+        masses = body.density * body.cells.volumes if self.v.bond_conductance == "cells" else body.masses
+        return masses * specific_heat
 
     def _periods(self):
         """{engine: steps between visits}."""

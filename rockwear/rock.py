@@ -3,11 +3,13 @@ import hashlib
 import json
 import math
 import os
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 
 from .kernels import packing
+from .kernels.cells import cells
 from .kernels.checks import ParameterError, not_negative, positive, require, within
 
 CACHE_VERSION = 2
@@ -81,7 +83,7 @@ class Specimen:
         not_negative("bonding_gap", bonding_gap, "m")
         within("coarsening", coarsening, 1, 8)
         positive("fine_depth", fine_depth, "m")
-        self.width, self.height = width, height
+        self.width, self.height, self.density = width, height, density
         key = dict(box=[width, height], radius_min=radius_min, radius_max=radius_max, porosity=porosity, seed=seed)
         if coarsening > 1:
             key.update(coarsening=coarsening, fine_depth=fine_depth)
@@ -122,6 +124,11 @@ class Specimen:
         return {"particles": (self.count, "-"), "bonds": (len(self.pairs), "-"), "porosity": (self.porosity, "-"),
                 "coordination": (2 * len(self.pairs) / self.count, "-"),
                 "mean_overlap": (float(overlap.mean()), "of a diameter")}
+
+    @cached_property
+    def cells(self):
+        """kernels.cells.Cells: the part of the box that each particle stands for."""
+        return cells(self.positions, box=(self.width, self.height))
 
     def current_positions(self):
         """(n, 2) m, of the particles in YADE now, by its one bulk read."""

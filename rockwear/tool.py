@@ -1,8 +1,11 @@
 """The tool: a parametric or given outline filled with particles, rigid, with a skin that meets the rock."""
+from functools import cached_property
+
 import numpy as np
 from scipy.spatial import cKDTree
 
 from .kernels import outline, packing
+from .kernels.cells import cells
 from .kernels.checks import positive
 from .kernels.conduction import calibrated_conductance
 from .kernels.erosion import Erosion
@@ -65,6 +68,11 @@ class Tool:
         x, y = self.positions.T
         top, back = self.vertices[:, 1].max(), self.vertices[:, 0].min()
         return (y > top - 1.5 * self.radii) | (x < back + 1.5 * self.radii)
+
+    @cached_property
+    def cells(self):
+        """kernels.cells.Cells: the part of the outline that each particle stands for."""
+        return cells(self.positions, polygon=self.vertices)
 
     @property
     def density(self):

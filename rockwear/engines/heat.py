@@ -3,6 +3,7 @@ import math
 
 import numpy as np
 
+from ..kernels.cells import conducting
 from ..kernels.surface import free_surface
 from . import Engine
 
@@ -16,8 +17,9 @@ class Heat(Engine):
     Convection acts on the free surface (P 42), found anew when bonds have broken or particles have gone.
 
     network: kernels.conduction.HeatNetwork; bonds, rock_friction, tool_contact: engines; rock, tool: the specimen and
-    the tool; tool_share: part of the heat of tool-rock friction that the tool takes; rock_conductance,
-    tool_conductance: W/K of each contact within rock and tool; conduction: False leaves all heat where it arises;
+    the tool; tool_share: part of the heat of tool-rock friction that the tool takes; rock_paths,
+    tool_paths: the pairs (m, 2) of particles that exchange heat within rock and tool, and their conductances (m,) W/K;
+    conduction: False leaves all heat where it arises;
     root_temperature: K at which the shank holds the tool's mounted particles, None where they are insulated;
     speed_up: a function giving the seconds of the process in a second of the mechanics (M 12.1), in which heat flows.
     """
@@ -25,14 +27,15 @@ class Heat(Engine):
     name = "heat"
 
     def __init__(self, *, network, bonds, rock_friction, tool_contact, rock, tool, heat_fraction, tool_share,
-                 contact_conductance, convection, ambient, rock_conductance, tool_conductance, surface_period,
+                 contact_conductance, convection, ambient, rock_paths, tool_paths, surface_period,
                  conduction=True, root_temperature=None, speed_up=lambda: 1.0):
         super().__init__()
         self.network, self.bonds, self.rock_friction, self.tool_contact = network, bonds, rock_friction, tool_contact
         self.rock, self.tool, self.n = rock, tool, rock.count
         self.heat_fraction, self.tool_share, self.conduction = heat_fraction, tool_share, conduction
         self.contact_conductance, self.convection, self.ambient = contact_conductance, convection, ambient
-        self.rock_conductance, self.tool_conductance = rock_conductance, tool_conductance
+        self.rock_paths, self.tool_paths = rock_paths, tool_paths
+        self.facing = ~self._among(rock_paths[0], bonds.pairs)
         self.surface_period, self.root_temperature, self.speed_up = surface_period, root_temperature, speed_up
         self.carried_away = self.replaced = self.renewed = 0.0
         self.surface_time = -math.inf
@@ -83,18 +86,32 @@ class Heat(Engine):
         """Contacts that conduct and surfaces that convect, as they are now."""
         self.surface_time = self.clock
         self.rock_friction.find_contacts()
-        loose = [(i.id1, i.id2) for i in self.rock_friction.contacts]
-        bonded = self.bonds.pairs[self.bonds.in_contact()]
-        tool_pairs = self.tool.erosion.pairs
-        tool_pairs = tool_pairs[self.tool.erosion.alive[tool_pairs].all(axis=1)] + self.n
-        edges = np.concatenate([bonded, np.array(loose, int).reshape(-1, 2), tool_pairs])
-        conductance = np.concatenate([np.full(len(bonded) + len(loose), self.rock_conductance),
-                                      np.full(len(tool_pairs), self.tool_conductance)])
-        self.network.rewire(edges=edges, conductance=conductance)
+        rock, tool = self._rock_now(), self._tool_now()
+        self.network.rewire(edges=np.concatenate([rock[0], tool[0] + self.n]),
+                            conductance=np.concatenate([rock[1], tool[1]]))
         in_contact = np.zeros(self.n + self.tool.count, bool)
         for index, rock in self.exchanged_with:
             in_contact[[self.n + index, rock]] = True
         self._expose(in_contact)
+
+    def _among(self, pairs, others):
+        """(m,) bool: which pairs of rock particles, the lower number first, are among the others."""
+        return np.isin(pairs @ [self.n, 1], others @ [self.n, 1])
+
+    def _rock_now(self):
+        """Rock particles in contact conduct, and those across closed pores; contacts made since as a mean of all."""
+        pairs, conductance = self.rock_paths
+        loose = np.sort(np.array([(i.id1, i.id2) for i in self.rock_friction.contacts], int).reshape(-1, 2), axis=1)
+        touching = np.concatenate([self.bonds.pairs[self.bonds.in_contact()], loose])
+        conducts = conducting(pairs, self._among(pairs, touching), self.facing, self.n)
+        met = loose[~self._among(loose, pairs)]
+        return (np.concatenate([pairs[conducts], met]),
+                np.concatenate([conductance[conducts], np.full(len(met), conductance.mean())]))
+
+    def _tool_now(self):
+        pairs, conductance = self.tool_paths
+        alive = self.tool.erosion.alive[pairs].all(axis=1)
+        return pairs[alive], conductance[alive]
 
     def _expose(self, in_contact):
         exposed = np.zeros(self.n + self.tool.count)

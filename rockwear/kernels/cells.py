@@ -142,19 +142,20 @@ def _behind_polygon(positions, polygon):
         yield np.where(outline.inside(mirrored, polygon)[:, None], positions, mirrored)
 
 
-def conducting(edges, joined, n):
+def conducting(edges, joined, facing, n):
     """Which neighbours exchange heat while some of the contacts are open: (m,) bool.
 
-    edges (m, 2) neighbours of n particles; joined (m,) bool: bonded or touching. Those do. Two that only face each
-    other across a pore do while it is closed, that is while a third particle joins them by two pairs that do: a crack
-    between them would have to part the third from one of the two.
+    edges (m, 2) neighbours of n particles; joined (m,) bool: bonded or touching, those do; facing (m,) bool: never
+    bonded, they only face each other across a pore. These do while the pore is closed, that is while a third particle
+    joins them by two pairs that do: a crack between them would have to part the third from one of the two. All others
+    are cracks, and do not.
     """
     edges, conducts = np.asarray(edges), np.array(joined, bool)
     while True:
         i, j = edges[conducts].T
         ends = np.concatenate([i, j]), np.concatenate([j, i])
         link = csr_matrix((np.ones(2 * len(i), np.int32), ends), shape=(n, n))
-        open_pairs = np.flatnonzero(~conducts)
+        open_pairs = np.flatnonzero(facing & ~conducts)
         a, b = edges[open_pairs].T
         closed = np.asarray(link[a].multiply(link[b]).sum(axis=1)).ravel() > 0
         if not closed.any():

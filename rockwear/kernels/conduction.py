@@ -21,6 +21,8 @@ STEFAN_BOLTZMANN = 5.670374419e-8  # W/(m^2 K^4)
 # network's error in space (on a chain they nearly cancel: a dt/l^2 = 1/4 against 1/6 for the best).
 STEP_FRACTION = 0.5
 
+PATHS = "cells", "packing", "P", "M"  # models of conduction between particles, see paths()
+
 _DENSE = 100  # nodes up to which a dense eigenvalue is quicker than Lanczos
 _LANCZOS_TOLERANCE = 1e-5
 _STATE = ("capacity", "temperature", "edges", "conductance", "fixed", "power", "convection", "ambient", "radiation",
@@ -389,6 +391,24 @@ def bar_conductance(conductivity, thickness):
     ParameterError.
     """
     return positive("conductivity", conductivity, "W/(m K)") * positive("thickness", thickness, "m")
+
+
+def paths(model, conductivity, *, pairs, cells, fitted):
+    """The pairs of a two dimensional packing that exchange heat, and their conductances: (m, 2) int, (m,) W/K.
+
+    model         "cells": neighbours by their cells' faces, lambda A/d (M eq. 7.3 with the face for its area)
+                  "packing": the contacts, all with the one value that is fitted to the packing
+                  "P", "M": the contacts as bars between two centres, bar_conductance and half of it
+    conductivity  lambda, W/(m K), greater than 0, or ParameterError
+    pairs         (m, 2) int, the contacts
+    cells         a function giving kernels.cells.Cells; fitted: one giving W/K, as calibrated_conductance does
+    """
+    require(model in PATHS, "model", model, f"one of {', '.join(PATHS)}")
+    if model == "cells":
+        found = cells()
+        return found.edges, found.conductance(conductivity)
+    each = fitted() if model == "packing" else bar_conductance(conductivity, 1.0) * {"P": 1.0, "M": 0.5}[model]
+    return pairs, np.full(len(pairs), each)
 
 
 def effusivity(conductivity, density, specific_heat):

@@ -121,14 +121,14 @@ def intact(seed=1):
 
 def test_pores_of_sound_rock_are_closed():
     _, found, joined, n = intact()
-    assert joined.mean() < 0.9 and conducting(found.edges, joined, n).all()
+    assert joined.mean() < 0.9 and conducting(found.edges, joined, ~joined, n).all()
 
 
 def test_a_crack_through_all_contacts_cuts_all_heat():
     positions, found, joined, n = intact()
     upper = positions[:, 1] > 0.015 + 0.003 * np.sin(300 * positions[:, 0])
     across = upper[found.edges[:, 0]] != upper[found.edges[:, 1]]
-    left = conducting(found.edges, joined & ~across, n)
+    left = conducting(found.edges, joined & ~across, ~joined, n)
     assert across.sum() > (across & joined).sum() > 10
     assert not left[across].any() and left[~across].all()
 
@@ -136,11 +136,12 @@ def test_a_crack_through_all_contacts_cuts_all_heat():
 def test_a_crack_of_one_contact_leaves_its_neighbours():
     square = np.array([[0, 1], [0, 2], [0, 3], [1, 2], [2, 3]])  # 0-2 is the diagonal of a pore 0 1 2 3
     joined = np.array([True, False, True, True, True])
-    assert conducting(square, joined, 4).all()
-    joined[0] = False  # broken bond 0-1: the pore is still closed by 3; and what is broken stays so unless bridged
-    assert conducting(square, joined, 4).tolist() == [True] * 5
+    facing = ~joined
+    assert conducting(square, joined, facing, 4).all()
+    joined[0] = False  # the bond 0-1 breaks: 3 still closes the pore
+    assert conducting(square, joined, facing, 4).tolist() == [False, True, True, True, True]
     joined[2] = False
-    assert conducting(square, joined, 4).tolist() == [False, False, False, True, True]
+    assert conducting(square, joined, facing, 4).tolist() == [False, False, False, True, True]
 
 
 # ---- what is refused

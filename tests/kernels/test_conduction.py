@@ -4,9 +4,10 @@ import pytest
 from scipy.spatial import cKDTree
 
 from rockwear.kernels import analytic
+from rockwear.kernels import cells as voronoi
 from rockwear.kernels.checks import ParameterError
-from rockwear.kernels.conduction import (HeatNetwork, bar_conductance, calibrated_conductance, effective_conductivity,
-                                         effusivity, effusivity_share)
+from rockwear.kernels.conduction import (PATHS, HeatNetwork, bar_conductance, calibrated_conductance,
+                                         effective_conductivity, effusivity, effusivity_share, paths)
 
 
 def chain(n, conductance=1.0, capacity=1.0, temperature=300.0):
@@ -440,6 +441,17 @@ def test_numbers_of_the_sources():
     assert effusivity_share(rock, steel) + effusivity_share(steel, rock) == pytest.approx(1.0)
     assert effusivity_share(steel, rock) / effusivity_share(rock, steel) == pytest.approx(steel / rock)
     assert effusivity_share(rock, rock) == 0.5
+
+
+def test_paths_of_the_four_models():
+    pairs = touching(grid(4, 4, diameter=1.0), 1.0)
+    found = {model: paths(model, 8.0, pairs=pairs, cells=lambda: voronoi.cells(grid(4, 4, diameter=1.0) + 0.5, box=(4, 4)),
+                          fitted=lambda: 7.0) for model in PATHS}
+    assert all(np.array_equal(np.unique(edges, axis=0), np.unique(pairs, axis=0)) for edges, _ in found.values())
+    each = {"cells": 8.0, "packing": 7.0, "P": 8.0, "M": 4.0}
+    assert {model: pytest.approx(values) for model, (_, values) in found.items()} == {m: [h] * 24 for m, h in each.items()}
+    with pytest.raises(ParameterError, match="model"):
+        paths("bars", 8.0, pairs=pairs, cells=None, fitted=None)
 
 
 # ---- what is refused
