@@ -9,6 +9,7 @@ from yade import O, utils
 
 from . import scene, vtk
 from .engines.bonds import Bonds, Crack, LettingGo, RockFriction
+from .engines.expansion import Expansion
 from .engines.heat import Heat
 from .engines.motion import BackgroundDamping, Foresight, Guide
 from .engines.record import Recorder, RunEnded, Watch
@@ -51,6 +52,7 @@ PARAMETERS = [
     Parameter("rock_density", 2500.0, "kg/m3", above_zero, "bulk density of the rock", "M 7.4"),
     Parameter("rock_specific_heat", 1970.0, "J/kgK", above_zero, "specific heat of the rock", "M 7.4"),
     Parameter("rock_conductivity", 5.0, "W/mK", above_zero, "conductivity of the rock", "M 11.1"),
+    Parameter("rock_expansion", 0.0, "1/K", number(0), "linear thermal expansion of the rock; 0: none", "P 5.2 has 1e-5"),
     # tool
     Parameter("tooth_height", 0.07, "m", above_zero, "height of the tooth", "ours: M shows it in a figure only"),
     Parameter("tooth_width", 0.045, "m", above_zero, "width of the tooth at its top", "ours"),
@@ -254,12 +256,13 @@ class Cutting(scene.Scene):
         self.wear = Wear(contact=self.contact, erosion=tool.erosion, tool=self.bodies, law=self.wear_law,
                          hardness=self.hardness, temperature=self._tool_temperature, on_removal=self._on_removal)
         self.heat = self._heat() if v.heat else None
+        self.expansion = self._expansion() if v.heat and v.rock_expansion else None
         self.damping = BackgroundDamping(rate=v.background_damping, bodies=range(rock.count)) if v.background_damping else None
         self.recorder = Recorder([self._log, self.wear.log, self.bonds.log] + ([self.heat.log] if self.heat else []))
         kick = 0.5 * float(rock.masses.max()) * (v.velocity * v.speed_up)**2
         self.watch = Watch(work=lambda: self.contact.work_done, floor=50 * kick)
         self._enlist(self.bonds, self.contact, self.rock_friction, LettingGo(self.bonds), guide, self.wear,
-                     self.heat, self.damping, self.recorder, self.watch)
+                     self.heat, self.expansion, self.damping, self.recorder, self.watch)
 
     def _heat(self):
         v, rock, tool = self.v, self.rock, self.tool
@@ -280,6 +283,11 @@ class Cutting(scene.Scene):
                     conduction=v.conduction, root_temperature=v.root_temperature if v.root == "fixed" else None,
                     surface_period=v.surface_period, speed_up=lambda: self.speed_up)
 
+    def _expansion(self):
+        return Expansion(coefficient=self.v.rock_expansion, rock=self.rock, reference=self.v.rock_temperature,
+                         temperature=lambda: self.heat.network.temperature[:self.rock.count], bonds=self.bonds,
+                         loose=lambda: [*self.rock_friction.contacts, *(entry[0] for entry in self.contact.possible)])
+
     def _fitted_to_rock(self):
         return calibrated_conductance(positions=self.rock.positions, edges=self.rock.pairs, conductance=1.0,
                                       conductivity=self.v.rock_conductivity)[0]
@@ -292,8 +300,9 @@ class Cutting(scene.Scene):
     def _periods(self):
         """{engine: steps between visits}."""
         v = self.v
+        heat = max(1, self._steps(v.heat_period))
         return {"bonds": 1, "tool_contact": v.sampling_period, "rock_friction": v.rock_sampling_period,
-                "wear": v.wear_period, "heat": max(1, self._steps(v.heat_period)),
+                "wear": v.wear_period, "heat": heat, "expansion": heat,
                 "letting_go": 200, "guide": GUIDE_PERIOD, "background_damping": v.damping_period, "watch": 200,
                 "recorder": max(1, self._steps(v.record_period))}
 
@@ -402,6 +411,8 @@ class Cutting(scene.Scene):
         audit["bond_breaking"] = self.bonds.energy_released
         audit["background_damping"] = self.damping.dissipated if self.damping else 0.0
         audit["removed_contacts"] = self.wear.contact_energy_removed
+        if self.expansion:
+            audit["thermal_expansion"] = -self.expansion.work
         audit["residual"] = audit["tool_work"] - math.fsum(list(audit.values())[1:])
         return audit
 

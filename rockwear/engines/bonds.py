@@ -236,6 +236,27 @@ class Bonds(Engine):
         self.broken = dict(sorted(self.broken.items()))
         self.carried = dict(sorted(self.carried.items()))
 
+    def expand(self, numbers, growth, overlap):
+        """Radii have grown: r_i + r_j of bonds `numbers` by `growth`, their overlap at rest by `overlap` (m).
+
+        -> J, the work of the expansion against the forces of the last step.
+        """
+        work = 0.0
+        for n, longer, shift in zip(numbers.tolist(), growth.tolist(), overlap.tolist()):
+            if self.status[n] == GONE:
+                continue
+            if n in self.carried:
+                carried = self.carried[n]
+                carried.length += shift
+                interaction, phys = carried.interaction, carried.phys
+            else:
+                interaction, phys = self.intact[n] if self.status[n] == INTACT else self.broken[n]
+            phys.initD += shift
+            pressing = phys.normalForce.dot(interaction.geom.normal)
+            if pressing or self.status[n] == INTACT:
+                work += (longer - shift) * (pressing + 0.5 * phys.kn * (longer - shift))
+        return work
+
     def in_contact(self):
         """(m,) bool: bonds that are intact, or broken and pressed together; what heat may pass through."""
         touching = self.status == INTACT

@@ -1,0 +1,62 @@
+"""Thermal expansion of the rock's particles, and what it does to their bonds and contacts."""
+import numpy as np
+from yade import O
+
+from . import Engine
+
+RESOLUTION = 1e-12
+"""Relative change of a radius that is worth a visit: 1e-7 K at 1e-5 1/K, 1e-5 of the strength of a bond at most."""
+
+
+class Expansion(Engine):
+    """Radii r = r0 (1 + alpha (theta - theta0)) (P 11), for bodies 0..n-1.
+
+    A bond takes up expansion as it would a displacement. Its length at rest, |x_j - x_i| at bonding, grows in the
+    proportion of r_i + r_j. (P 10 lets it grow by r_i + r_j and keeps the packing's gap g0, so that bonds with overlaps
+    and bonds with gaps grow unlike each other, and a packing that is heated evenly comes under stress of its own. Here
+    it does not; where discs touch the two are the same.) A broken bond keeps its length at rest, that is, the distance
+    at which it presses again. Other contacts see the radii. Masses stay: density falls. Bounding boxes follow when the
+    collider runs next; their margin, a twentieth of a radius, is a thousand times what the radii grow between.
+
+    coefficient: alpha, 1/K; rock: the specimen, with its cold radii and places; reference: theta0, K; temperature: a
+    function giving (n,) K; bonds: engines.bonds.Bonds; loose: a function giving the contacts that are no bonds.
+    `work` (J) is what the expansion has done against forces in bonds and contacts.
+    """
+
+    name = "expansion"
+
+    def __init__(self, *, coefficient, rock, reference, temperature, bonds, loose=tuple):
+        super().__init__()
+        self.coefficient, self.reference, self.temperature = coefficient, reference, temperature
+        self.bonds, self.loose = bonds, loose
+        self.cold, (i, j) = rock.radii, rock.pairs.T
+        distance = np.linalg.norm(rock.positions[j] - rock.positions[i], axis=1)
+        self.overlap = 1 - distance / (self.cold[i] + self.cold[j])
+        self.work = 0.0
+
+    def connect(self):
+        self.shapes = [O.bodies[i].shape for i in range(len(self.cold))]
+        self.radii = np.array([shape.radius for shape in self.shapes])
+
+    def act(self):
+        radii = self.cold * (1 + self.coefficient * (self.temperature() - self.reference))
+        changed = abs(radii - self.radii) > RESOLUTION * self.cold
+        growth = np.where(changed, radii - self.radii, 0.0)
+        if not changed.any():
+            return
+        self.radii = self.radii + growth
+        for i in np.flatnonzero(changed).tolist():
+            self.shapes[i].radius = float(self.radii[i])
+        longer = growth[self.bonds.pairs].sum(axis=1)
+        numbers = np.flatnonzero(longer)
+        self.work += self.bonds.expand(numbers, longer[numbers], (longer * self.overlap)[numbers])
+        for i in self.loose():
+            grown = sum(growth[body] for body in (i.id1, i.id2) if body < len(growth))
+            if grown and i.isReal:
+                self.work += grown * (i.phys.normalForce.dot(i.geom.normal) + 0.5 * i.phys.kn * grown)
+
+    def state(self):
+        return {"work": self.work}
+
+    def restore(self, state):
+        self.work = float(state["work"])

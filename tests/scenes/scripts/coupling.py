@@ -1,0 +1,340 @@
+"""Heat and mechanics on each other, where exact answers exist; writes {check: {number: value}} to the file named last.
+
+    yade -n -x coupling.py CHECK ... FILE
+"""
+import json
+import math
+import os
+import sys
+from types import SimpleNamespace
+
+ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(sys.argv[0])))))
+sys.path.insert(0, ROOT)
+
+import numpy as np  # noqa: E402
+from yade import O  # noqa: E402
+
+from rockwear import engines, scene  # noqa: E402
+from rockwear.engines.bonds import Bonds, RockFriction  # noqa: E402
+from rockwear.engines.expansion import Expansion  # noqa: E402
+from rockwear.engines.heat import Heat  # noqa: E402
+from rockwear.engines.motion import Foresight  # noqa: E402
+from rockwear.engines.wear import ToolContact  # noqa: E402
+from rockwear.kernels.bond_laws import ElasticBrittle, ElasticDamage, ElastoPlasticSoftening  # noqa: E402
+from rockwear.kernels.conduction import HeatNetwork, effusivity, effusivity_share  # noqa: E402
+from rockwear.kernels.packing import contacts  # noqa: E402
+from rockwear.kernels.stability import critical_time_step  # noqa: E402
+from rockwear.materials import SANDSTONE, STEEL  # noqa: E402
+from rockwear.rock import Specimen  # noqa: E402
+
+KN, KT, MU, ALPHA, D = 20e9, 5e9, 0.5, 1e-5, 2e-3
+E = 2 * math.sqrt(3) * KN * (KN + KT) / (3 * KN + KT)
+UNBREAKABLE = ElasticBrittle(kn=KN, kt=KT, Rn=1e12, Rt=1e12, mu=MU)
+
+
+def arranged(positions, radii=D / 2, pairs=None, held=()):
+    """Discs at given places, those that touch bonded."""
+    positions = np.asarray(positions, float)
+    count, radii = len(positions), np.broadcast_to(radii, len(positions)).astype(float)
+    supported = np.zeros(count, bool)
+    supported[list(held)] = True
+    masses = 2500 * np.pi * radii**2
+    return SimpleNamespace(positions=positions, radii=radii, count=count, supported=supported, masses=masses,
+                           inertias=0.5 * masses * radii**2, strength_factor=None,
+                           pairs=contacts(positions, radii, 1e-9) if pairs is None else np.asarray(pairs, int).reshape(-1, 2))
+
+
+class Assembly:
+    """Bonded discs in YADE whose temperatures (n,) K above the reference are set by hand."""
+
+    def __init__(self, rock, law=UNBREAKABLE, damping=0.0):
+        self.rock, self.temperature = rock, np.zeros(rock.count)
+        O.reset()
+        scene.put_rock_materials(mu=MU)
+        scene.put_rock(rock)
+        scene.put_loop(kn=KN, kt=KT, mu=MU, damping=damping)
+        self.bonds = Bonds(pairs=rock.pairs, law=law, clock=lambda: O.time)
+        scene.make_bonds(rock, self.bonds)
+        self.expansion = Expansion(coefficient=ALPHA, rock=rock, reference=0.0, temperature=lambda: self.temperature,
+                                   bonds=self.bonds)
+        engines.enlist([self.bonds, self.expansion])
+        O.engines = O.engines[:-1] + engines.runners({"bonds": 1}) + O.engines[-1:]
+        self.bonds.connect()
+        self.expansion.connect()
+        O.dt = 0.6 * critical_time_step(positions=rock.positions, radii=rock.radii, masses=rock.masses,
+                                        inertias=rock.inertias, bonds=rock.pairs, kn=KN, kt=KT)
+
+    def heat(self, temperature):
+        self.temperature = np.broadcast_to(temperature, self.rock.count)
+        self.expansion.act()
+
+    def place(self, positions):
+        for i, (x, y) in enumerate(positions.tolist()):
+            O.bodies[i].state.pos = (x, y, 0)
+
+    def move(self, along, steps):
+        """Move all discs along x, those that are free only at first."""
+        for i, shift in enumerate(along.tolist()):
+            O.bodies[i].state.vel = (shift / (steps * O.dt), 0, 0)
+        self.relax(steps)
+        for body in O.bodies:
+            body.state.vel = (0, 0, 0)
+
+    def positions(self):
+        return np.array([O.bodies[i].state.pos for i in range(self.rock.count)])[:, :2]
+
+    def forces(self):
+        """(m, 2) N that the second particle of each bond feels, and (m, 2) m from the first to the second."""
+        return (np.array([(i.phys.normalForce + i.phys.shearForce) * (1 if i.id1 == a else -1)
+                          for a, i in self._bonds()])[:, :2],
+                np.array([O.bodies[i.id2 if i.id1 == a else i.id1].state.pos - O.bodies[a].state.pos
+                          for a, i in self._bonds()])[:, :2])
+
+    def _bonds(self):
+        return [(a, O.interactions[a, b]) for a, b in self.rock.pairs.tolist()]
+
+    def relax(self, steps):
+        O.run(steps, True)
+        if engines.failures:
+            raise engines.failures.pop()
+
+
+def lattice(rows, columns):
+    return [(D * (k + 0.5 * (row % 2)), 0.5 * math.sqrt(3) * D * row) for row in range(rows) for k in range(columns)]
+
+
+def free():
+    """A packing with gaps and overlaps, heated evenly: bonds feel nothing once it has its new size."""
+    rock = Specimen(width=0.04, height=0.03, radius_min=1e-3, radius_max=1.5e-3, porosity=0.12, seed=1, bonding_gap=1e-4,
+                    density=2500)
+    a = Assembly(rock)
+    a.heat(10.0)
+    a.place(rock.positions * (1 + 10 * ALPHA))
+    O.dt = 1e-12
+    O.step()
+    grown = abs(a.forces()[0]).max()
+    a = Assembly(rock, damping=0.4)
+    a.heat(10.0)
+    a.relax(6000)
+    size = np.ptp(a.positions(), axis=0) / np.ptp(rock.positions, axis=0) - 1
+    return {"force_of_strength": grown / 1e5, "force_relaxed": abs(a.forces()[0]).max() / (KN * ALPHA * 10 * D),
+            "strain": size.tolist(), "expected": 10 * ALPHA, "mass": sum(O.bodies[i].state.mass for i in range(rock.count)),
+            "cold_mass": float(rock.masses.sum())}
+
+
+def grip(a, kelvin, shortened=0.0):
+    """Force (N) with which the two ends of a specimen are held, when it is heated, or shortened by that strain."""
+    x = a.rock.positions[:, 0]
+    left, right = np.flatnonzero(x < x.min() + D), np.flatnonzero(x > x.max() - D)
+    for i in (*left, *right):
+        O.bodies[int(i)].state.blockedDOFs = "xzXYZ"
+    a.heat(kelvin)
+    if shortened:
+        a.move(-shortened * x, steps=1000)
+    a.relax(8000)
+    right_of = x[a.rock.pairs] > 0.5 * (x.min() + x.max())
+    return (a.forces()[0][:, 0] * (right_of[:, 1] * 1.0 - right_of[:, 0])).sum()
+
+
+def constrained():
+    """A lattice held at its ends, sides free: E alpha dtheta. Held everywhere: E alpha dtheta/(1 - nu)."""
+    rows, kelvin = 7, 10.0
+    rock = arranged(lattice(rows, 30))
+    # The section over which the lattice's force is a stress: see scripts/laboratory.py.
+    section = (rows - 1) * 0.5 * math.sqrt(3) * D + KN * D / E
+    uniaxial = grip(Assembly(rock, damping=0.4), kelvin) / section
+    packed = Specimen(width=0.05, height=0.03, radius_min=1e-3, radius_max=1.5e-3, porosity=0.12, seed=2, bonding_gap=1e-4,
+                      density=2500)
+    heated, pressed = grip(Assembly(packed, damping=0.4), kelvin), grip(Assembly(packed, damping=0.4), 0.0, kelvin * ALPHA)
+    a = Assembly(arranged(lattice(7, 9), held=range(63)))
+    for part in (0.25, 0.5, 1.0, 0.7, 2.0, 1.0):
+        a.heat(part * kelvin)
+        a.relax(1)
+    force, branch = a.forces()
+    middle = [k for k, pair in enumerate(a.rock.pairs) if 31 in pair]
+    stress = -0.5 * np.einsum("ki,kj->ij", force[middle], branch[middle]) / (0.5 * math.sqrt(3) * D**2)
+    return {"uniaxial": uniaxial, "E_alpha_dT": E * ALPHA * kelvin, "packing_heated": heated, "packing_pressed": pressed,
+            "plane": (-stress).tolist(), "plane_expected": math.sqrt(3) * KN * ALPHA * kelvin,
+            "work": a.expansion.work, "stored": a.bonds.elastic_energy()}
+
+
+def followed():
+    """Two overlapping discs held at an opening and heated, then cooled: each law's own force at the same opening."""
+    found = {}
+    common = dict(kn=KN, kt=KT, Rn=1e5, Rt=1e5, mu=MU)
+    laws = {"brittle": ElasticBrittle(**common), "damage": ElasticDamage(H=1e10, **common),
+            "plastic": ElastoPlasticSoftening(H=1e10, **common)}
+    apart = 0.98 * D
+    for name, law in laws.items():
+        for opening in (0.0, 2e-6, 8e-6, 40e-6):
+            a = Assembly(arranged([(0, 0), (apart, 0)], pairs=[(0, 1)], held=(0, 1)), law)
+            path, forces = [0.0], [0.0]
+
+            def visit(opened, kelvin):
+                a.place(np.array([(0, 0), (apart + opened, 0)]))
+                a.heat(kelvin)
+                a.relax(1)
+                path.append(opened - ALPHA * kelvin * apart)
+                forces.append(-a.forces()[0][0, 0])
+
+            for opened in np.linspace(0, opening, 10)[1:]:
+                visit(opened, 0.0)
+            for kelvin in (50, 100, 700, 2500, 300, -100, -500, 0):
+                visit(opening, float(kelvin))
+            exact = law.drive(np.array(path), np.zeros(len(path)))[0]
+            found[f"{name} {opening:g}"] = {"deviation": float(abs(np.array(forces) - exact).max() / law.Rn),
+                                            "broken": int(a.bonds.status[0]), "largest": float(max(map(abs, forces)))}
+    return found
+
+
+def heated_disc():
+    """A hot disc inside a cold round plate (plane stress, radii a < b): mean stresses over rings."""
+    reach, kelvin = 24.5, 10.0
+    places = np.array([(x, y) for x, y in lattice(70, 70)])
+    places -= places[np.argmin(np.linalg.norm(places - places.mean(axis=0), axis=1))]
+    rock = arranged(places[np.linalg.norm(places, axis=1) < reach * D])
+    r = np.linalg.norm(rock.positions, axis=1)
+    cell, hot = 0.5 * math.sqrt(3) * D**2, r < 8.2 * D
+    inner, outer = (math.sqrt(count * cell / math.pi) for count in (hot.sum(), rock.count))
+    a = Assembly(rock, damping=0.4)
+    a.heat(np.where(hot, kelvin, 0.0))
+    a.relax(6000)
+    force, branch = a.forces()
+    share = -0.5 * np.einsum("ki,kj->kij", force, branch) / cell
+    stress = np.zeros((rock.count, 2, 2))
+    for side in (0, 1):
+        np.add.at(stress, rock.pairs[:, side], share)
+    radial = rock.positions / np.maximum(r, 1e-12)[:, None]
+    rr = np.einsum("ni,nij,nj->n", radial, stress, radial)
+    tt = np.trace(stress, axis1=1, axis2=2) - rr
+    scale, rows = E * ALPHA * kelvin, []
+    for low, high in ((0, 0.7), (1.3, 1.6), (1.6, 2.0), (2.0, 2.5)):
+        ring = (r >= low * inner) & (r < high * inner)
+        inside = high < 1
+        exact_rr = 0.5 * (inner**2 / outer**2 - (1 if inside else (inner / r[ring])**2)).mean() if not inside else \
+            0.5 * (inner**2 / outer**2 - 1)
+        exact_tt = exact_rr if inside else 0.5 * (inner**2 / outer**2 + (inner / r[ring])**2).mean()
+        rows.append([float(rr[ring].mean() / scale), exact_rr, float(tt[ring].mean() / scale), exact_tt])
+    return {"rings": rows}
+
+
+def two_spinning(period, duration=0.02):
+    """Overlap of two discs held in place that rub on each other, after `duration`, and its exact exponential growth.
+
+    Friction heats them, they expand, press more and heat more: d' = r alpha chi mu kn d v / C.
+    """
+    radius, start, chi, alpha, capacity = 1e-3, 1e-7, 0.85, 1e-4, 2.0
+    rock = arranged([(0, 0), (2 * radius - start, 0)], radius, pairs=np.empty((0, 2)), held=(0, 1))
+    O.reset()
+    scene.put_rock_materials(mu=MU)
+    scene.put_rock(rock)
+    # A shear spring so stiff that it takes up nothing.
+    scene.put_loop(kn=KN, kt=1e5 * KN, mu=MU)
+    for body in O.bodies:
+        body.mat = O.materials["loose rock"]
+    O.dt = 1e-6
+    # Both turn the same way, so that their surfaces pass each other.
+    for body in O.bodies:
+        body.state.angVel = (0, 0, 20.0)
+    speed = 2 * 20.0 * radius
+    bonds = Bonds(pairs=rock.pairs, law=UNBREAKABLE, clock=lambda: O.time)
+    motion = Foresight(masses=rock.masses, inertias=rock.inertias, radii=rock.radii, held=rock.supported)
+    friction = RockFriction(bonds=bonds, motion=motion)
+    network = HeatNetwork(capacity=np.full(2, capacity), temperature=300.0, edges=np.empty((0, 2), int), conductance=0.0)
+    nothing = SimpleNamespace(count=0, radii=np.empty(0), mounted=np.zeros(0, bool))
+    untouched = SimpleNamespace(take_heating=lambda: (np.empty(0), np.zeros(2), {}))
+    heat = Heat(network=network, bonds=bonds, rock_friction=friction, tool_contact=untouched, rock=rock, tool=nothing,
+                heat_fraction=chi, tool_share=0.5, contact_conductance=0.0, convection=0.0, ambient=300.0,
+                rock_conductance=0.0, tool_conductance=0.0, surface_period=1.0, conduction=False)
+    expansion = Expansion(coefficient=alpha, rock=rock, reference=300.0, temperature=lambda: network.temperature,
+                          bonds=bonds, loose=lambda: friction.contacts)
+    O.run(10, True)
+    engines.enlist([friction, heat, expansion])
+    for engine in (bonds, friction, heat, expansion):
+        engine.connect()
+    friction.booked = friction.law.plasticDissipation()
+    steps = round(period / O.dt)
+    O.engines = (O.engines[:-1] + engines.runners({"rock_friction": 1}) + O.engines[-1:]
+                 + engines.runners({"heat": steps, "expansion": steps}))
+    for engine in (friction, heat, expansion):
+        engine.last_iteration = O.iter
+    O.run(round(duration / O.dt), True)
+    heat.act(), expansion.act()
+    if engines.failures:
+        raise engines.failures.pop()
+    overlap = sum(expansion.radii) - 2 * radius + start
+    rate = radius * alpha * chi * MU * KN * speed / capacity
+    return overlap / start, math.exp(rate * duration)
+
+
+def staggered():
+    """Error of the coupled problem against the coupling step."""
+    periods = [4e-4, 2e-4, 1e-4, 5e-5]
+    runs = [two_spinning(period) for period in periods]
+    return {"periods": periods, "grown": [run[0] for run in runs], "exact": runs[0][1]}
+
+
+def sliding_block():
+    """A block of steel discs on a turning stone, under a constant force, there and back: heat of both by irreversible slip."""
+    stone, radius, pressed, discs = 0.05, 0.5e-3, 4e-6, 5
+    spin, steps = 2.0, 4000
+    angle = math.pi / 2 + 2.2 * radius / (stone + radius) * (np.arange(discs) - (discs - 1) / 2)
+    places = (stone + radius - pressed) * np.column_stack([np.cos(angle), np.sin(angle)])
+    O.reset()
+    scene.put_rock_materials(mu=MU)
+    scene.put_steel(mu=0.3, contact_damping=0.9)
+    rock = arranged([(0, 0)], stone, pairs=np.empty((0, 2)), held=(0,))
+    scene.put_rock(rock)
+    scene.put_loop(kn=KN, kt=KT, mu=MU, tool=(90e9, 90e9, 0.3))
+    O.bodies[0].mat = O.materials["loose rock"]
+    bodies = {}
+    for index, place in enumerate(places.tolist()):
+        body = scene.finite_disc(place, radius, material="steel", mask=scene.TOOL_MASK, mass=0.0, inertia=0.0)
+        body.state.blockedDOFs = "xyzXYZ"
+        bodies[index] = O.bodies.append(body)
+    tool = SimpleNamespace(count=discs, radii=np.full(discs, radius), mounted=np.zeros(discs, bool), body_of=bodies,
+                           ids=list(bodies.values()), velocities={index: (0.0, 0.0) for index in bodies}, spin=0.0)
+    bonds = Bonds(pairs=rock.pairs, law=UNBREAKABLE, clock=lambda: O.time)
+    motion = Foresight(masses=rock.masses, inertias=rock.inertias, radii=rock.radii, held=rock.supported)
+    friction = RockFriction(bonds=bonds, motion=motion)
+    contact = ToolContact(tool=tool, motion=motion)
+    c_rock, c_tool = 5.0, 2.0
+    network = HeatNetwork(capacity=np.array([c_rock] + discs * [c_tool]), temperature=300.0, edges=np.empty((0, 2), int),
+                          conductance=0.0)
+    e_rock, e_tool = (effusivity(m.conductivity, m.density, m.specific_heat) for m in (SANDSTONE, STEEL))
+    share, chi = effusivity_share(e_tool, e_rock), 0.85
+    heat = Heat(network=network, bonds=bonds, rock_friction=friction, tool_contact=contact, rock=rock, tool=tool,
+                heat_fraction=chi, tool_share=share, contact_conductance=0.0, convection=0.0, ambient=300.0,
+                rock_conductance=0.0, tool_conductance=0.0, surface_period=1.0, conduction=False)
+    O.dt = 1e-8
+    engines.enlist([contact, friction, heat])
+    O.engines = (O.engines[:-1] + engines.runners({"tool_contact": 1, "rock_friction": 4}) + O.engines[-1:]
+                 + engines.runners({"heat": 100}))
+    for engine in (bonds, friction, contact, heat):
+        engine.connect()
+    kn, kt, load = 90e9, 90e9, 0.0
+    slip, turns = 0.0, []
+    for sign in (1, -1, 1):
+        O.bodies[0].state.angVel = (0, 0, sign * spin)
+        O.run(steps, True)
+        # Each turn first slackens the springs and draws them taut the other way: no heat in those.
+        load = max(i.phys.normalForce.norm() for i in O.interactions if i.isReal)
+        slip += steps * O.dt * spin * stone - (1 if not turns else 2) * 0.3 * load / kt
+        turns.append(O.interactions.countReal())
+    heat.act()
+    if engines.failures:
+        raise engines.failures.pop()
+    exact = chi * 0.3 * kn * pressed * discs * slip
+    rise = network.temperature - 300.0
+    return {"force": load / (kn * pressed), "tool_heat": float(c_tool * rise[1:].sum()), "tool_exact": share * exact,
+            "rock_heat": float(c_rock * rise[0]), "rock_exact": (1 - share) * exact, "slip": slip,
+            "all_slip": 3 * steps * O.dt * spin * stone, "touching": turns,
+            "spread": float(np.ptp(rise[1:]) / rise[1:].mean())}
+
+
+CHECKS = {check.__name__: check for check in (free, constrained, followed, heated_disc, staggered, sliding_block)}
+*wanted, file = sys.argv[1:]
+with open(file, "w") as stream:
+    json.dump({name: CHECKS[name]() for name in wanted}, stream)
+sys.stdout.flush()
+os._exit(0)
