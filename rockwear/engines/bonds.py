@@ -14,6 +14,9 @@ UNLIMITED = 1e30
 """A strength (N) that no bond reaches."""
 NO_CHANGE = 1e-13
 """Difference of two forces that is round-off, as a fraction of the force."""
+PATIENCE = 8
+"""Steps without yielding after which a carried bond goes back to YADE's law. Going back and tripping again costs about
+as much as carrying a bond so long, so that no path costs much more than twice what it must."""
 
 Crack = namedtuple("Crack", "time x y z normal_x normal_y normal_z mode energy body_1 body_2")
 """One broken bond: s, m, unit normal, 1 tension or 2 shear, J dissipated until it was gone, ids of the particles."""
@@ -23,7 +26,8 @@ class Carried:
     """A contact whose force is given by a law of ours, step by step, in place of the force of YADE's law.
 
     law, bond: the law and its state; length: penetrationDepth (m) at which the opening is zero; un, Fn: opening (m)
-    and normal force (N) of the last step; spent: J dissipated so far; opened: True if it broke by opening.
+    and normal force (N) of the last step; spent: J dissipated so far; quiet: steps since it last yielded; opened: True
+    if it broke by opening.
 
     YADE's contact is left such that its own law makes the next elastic trial: shearForce is our tangential force, and
     kn, ks and initD are secants, so that -shearForce/ks is the elastic tangential displacement, which the C++ law
@@ -31,16 +35,29 @@ class Carried:
     """
 
     __slots__ = ("interaction", "geom", "phys", "bodies", "radii",
-                 "law", "bond", "length", "un", "Fn", "spent", "opened")
+                 "law", "bond", "length", "un", "Fn", "spent", "quiet", "opened")
 
-    def __init__(self, *, law, bond, length, un, Fn, spent=0.0):
-        self.law, self.bond, self.length, self.un, self.Fn, self.spent = law, bond, length, un, Fn, spent
+    def __init__(self, *, law, bond, length, un=0.0, Fn=0.0, spent=0.0, quiet=0):
+        self.law, self.bond, self.length, self.un, self.Fn = law, bond, length, un, Fn
+        self.spent, self.quiet = spent, int(quiet)
 
-    def connect(self, interaction, phys):
+    def connect(self, interaction):
         """The contact of the scene that is in O now."""
-        self.interaction, self.geom, self.phys = interaction, interaction.geom, phys
+        self.interaction, self.geom, self.phys = interaction, interaction.geom, interaction.phys
         self.bodies, self.radii = (interaction.id1, interaction.id2), (self.geom.refR1, self.geom.refR2)
-        phys.isCohesive, phys.FnMax, phys.FsMax = True, UNLIMITED, UNLIMITED
+
+    def take_over(self):
+        """No tripwire any more: each step comes to `advance`."""
+        phys = self.phys
+        phys.isCohesive, phys.FnMax, phys.FsMax, phys.tanFrictionAngle = True, UNLIMITED, UNLIMITED, 0.0
+        self.quiet = 0
+
+    def rest(self):
+        """Leave the bond to YADE's law, within a new tripwire. -> True if our law has one to give."""
+        wire = self.law.tripwire(self.bond, self.Fn, self.phys.shearForce.norm())
+        if wire:
+            _put_wire(self.phys, wire)
+        return wire is not None
 
     def trial(self):
         """Elastic tangential displacement (Vector3, m) as YADE's law has carried it into this step."""
@@ -95,6 +112,19 @@ class Carried:
         phys.kn, phys.ks, phys.initD = law.kn, law.kt, self.length - self.bond.un_plastic
 
 
+def _lost(interaction):
+    """True if a body of the contact has been erased: a YADE interaction does not say so itself."""
+    return not O.interactions.has(interaction.id1, interaction.id2)
+
+
+def _put_wire(phys, wire):
+    """Make YADE's law that of the tripwire."""
+    phys.kn, phys.ks, phys.tanFrictionAngle = wire.kn, wire.kt, -wire.slope
+    phys.FnMax, phys.FsMax = min(wire.Fn, UNLIMITED), min(wire.Ft, UNLIMITED)
+    # A contact that tripped before would no longer keep account of its strain energy.
+    phys.isCohesive, phys.momentBroken = True, False
+
+
 def _strain_energy(phys):
     """Strain energy (J) of a contact, Fn^2/2kn + Ft^2/2kt."""
     return 0.5 * (phys.normalForce.squaredNorm() / phys.kn + phys.shearForce.squaredNorm() / phys.ks)
@@ -106,34 +136,41 @@ class Bonds(Engine):
     pairs: (m, 2) body ids; law: of rockwear.kernels.bond_laws; strength_factor: (m,), a bond obeys law.scaled(factor);
     clock: a function giving the time (s) for the crack log.
 
-    YADE's JCFpm law gives Fn = kn un, Ft = kt ut until Fn > FnMax or |Ft| > FsMax, which are the law's tripwire. (Its
-    friction angle is zero, so that the shear strength does not grow with compression.) Two counters of the C++ law
-    tell that a wire was tripped: only when one moves are the bonds looked at. In the same step a tripped bond goes into
-    `carried`, and Python gives its force in every step until it is gone; then YADE's law gives the Coulomb contact
-    that remains. It keeps its reference length, so that overlaps of the packing never turn into forces. A brittle bond
-    is gone in the step of its trip, and costs nothing afterwards.
+    YADE's JCFpm law gives Fn = kn un, Ft = kt ut until Fn > FnMax or |Ft| > FsMax + slope Fn, which are the law's
+    tripwire. Two counters of the C++ law tell that a wire was tripped, and a sum which: the C++ law adds up the
+    crossSection of what breaks, which serves as the bond's label. In the same step a tripped bond goes into `carried`,
+    and Python gives its force in every step. Most of them soften for a moment and are elastic again for long: a bond
+    that has not yielded for some steps is `resting`, with YADE's law, within a new wire about its present forces. So
+    Python pays for bonds that yield, not for bonds past their peak. Once a bond is gone YADE's law gives the Coulomb
+    contact that remains. It keeps its reference length, so that overlaps of the packing never turn into forces. A
+    brittle bond is gone in the step of its trip, and costs nothing afterwards.
 
     A law without a tripwire (nothing is linear within) has all its bonds, and their contacts afterwards, carried by
     Python: some microseconds a bond and step, which is fine for small specimens only.
 
+    Particles may be erased from O at any time, by anyone: their bonds are then GONE, with what they held, and are no
+    cracks.
+
     Where a wire is tripped YADE's law forgets the shear force, or cuts it. What it was follows from where the two
-    bodies have turned since they were bonded. That is exact in 2D; in 3D its error grows with the cube of the angle,
-    and is below 1e-6 of the strength where Rt/kt is 5 thousandths of a radius.
+    bodies have turned since they were bonded; a bond that has slipped, and goes to rest, counts as bonded anew, with
+    the normals that give its elastic displacement. That is exact in 2D; in 3D its error grows with the cube of the
+    angle, and is below 1e-6 of the strength where Rt/kt is 5 thousandths of a radius.
     """
 
     name = "bonds"
     def __init__(self, *, pairs, law, strength_factor=None, clock):
         super().__init__()
         self.pairs = np.asarray(pairs)
+        self.bodies = np.unique(self.pairs).tolist()
         self.law = law
         factors = np.ones(len(self.pairs)) if strength_factor is None else np.asarray(strength_factor, float)
         scaled = {factor: law.scaled(factor) for factor in np.unique(factors).tolist()}
         self.laws = [scaled[factor] for factor in factors.tolist()]
-        self.native = law.tripwire()[1] > 0.0
+        self.native = law.tripwire(law.virgin()) is not None
         self.status = np.full(len(self.pairs), INTACT, np.int8)
         self.normals = np.zeros((len(self.pairs), 2, 3))
         self.cracks = []
-        self.carried = {}
+        self.carried, self.resting = {}, {}
         self.energy_released = 0.0
         self.clock = clock
 
@@ -142,13 +179,17 @@ class Bonds(Engine):
         for n, ((i, j), law) in enumerate(zip(self.pairs.tolist(), self.laws)):
             interaction = O.interactions[i, j]
             phys, normal = interaction.phys, interaction.geom.normal
-            phys.kn, phys.ks = law.kn, law.kt
-            phys.FnMax, phys.FsMax = law.tripwire()
-            phys.isCohesive, phys.tanFrictionAngle = True, 0.0
+            # The label by which the C++ law tells what it broke.
+            phys.crossSection = n + 1
             for side, body in enumerate((interaction.id1, interaction.id2)):
                 self.normals[n, side] = O.bodies[body].state.ori.conjugate() * normal
-            if not self.native:
-                self.carried[n] = Carried(law=law, bond=law.virgin(), length=phys.initD, un=0.0, Fn=0.0)
+            if self.native:
+                _put_wire(phys, law.tripwire(law.virgin()))
+            else:
+                phys.kn, phys.ks = law.kn, law.kt
+                carried = self.carried[n] = Carried(law=law, bond=law.virgin(), length=phys.initD)
+                carried.connect(interaction)
+                carried.take_over()
 
     def connect(self):
         """Find the interactions of the scene that is in O now."""
@@ -158,41 +199,100 @@ class Bonds(Engine):
         for n, (i, j) in enumerate(self.pairs.tolist()):
             if self.status[n] != GONE:
                 interaction = O.interactions[i, j]
-                if n in self.carried:
-                    self.carried[n].connect(interaction, interaction.phys)
-                elif self.status[n] == INTACT:
-                    self.intact[n] = interaction, interaction.phys
+                for softened in (self.carried, self.resting):
+                    if n in softened:
+                        softened[n].connect(interaction)
                 if self.status[n] == BROKEN:
                     self.broken[n] = interaction, interaction.phys
+                elif n not in self.carried:
+                    self.intact[n] = interaction, interaction.phys
         self._read_counters()
 
     def _read_counters(self):
-        self.counts = (self.functor.nbTensCracks, self.functor.nbShearCracks)
+        self.counts = self.functor.nbTensCracks, self.functor.nbShearCracks
+        self.functor.totalCracksSurface = 0.0
 
     def act(self):
         """The forces of carried bonds; and where one of two counters has moved, the bonds that tripped in this step."""
-        forces = O.forces
+        forces, functor = O.forces, self.functor
         for n, carried in list(self.carried.items()):
+            if _lost(carried.interaction):
+                self._forget(n)
+                continue
             spent = carried.advance(carried.trial(), forces)
-            if spent is not None and self.status[n] == INTACT:
-                self._book(n, carried, spent)
-        if (self.functor.nbTensCracks, self.functor.nbShearCracks) != self.counts:
+            if spent is None:
+                carried.quiet += 1
+                if carried.quiet >= PATIENCE and self.native:
+                    self._rest(n, carried)
+            else:
+                carried.quiet = 0
+                if self.status[n] == INTACT:
+                    self._book(n, carried, spent)
+        if (functor.nbTensCracks, functor.nbShearCracks) != self.counts:
+            tripped = self._tripped()
             self._read_counters()
-            for n in [n for n, (_, phys) in self.intact.items() if not phys.isCohesive]:
-                self._trip(n, *self.intact.pop(n))
+            for n in tripped:
+                self._trip(n)
 
-    def _trip(self, n, interaction, phys):
+    def _tripped(self):
+        """Bonds that tripped in this step: one is told by the label that was added, several are searched for."""
+        number = self.functor.nbTensCracks + self.functor.nbShearCracks - sum(self.counts)
+        if O.numThreads > 1:
+            number = len(self.intact)  # threads that count at once may lose a count
+        elif number == 1:
+            return [int(self.functor.totalCracksSurface) - 1]
+        found = []
+        # What came to rest last comes first: most of those that trip together have just tripped before.
+        for n, (_, phys) in reversed(self.intact.items()):
+            if not phys.isCohesive:
+                found.append(n)
+                if len(found) == number:
+                    break
+        return sorted(found)
+
+    def _trip(self, n):
         """Carry a bond from here on, as our law answers where YADE's has given way."""
-        geom, law = interaction.geom, self.laws[n]
+        interaction, phys = self.intact.pop(n)
+        if _lost(interaction):
+            self._forget(n)
+            return
+        carried = self.resting.pop(n, None) or Carried(law=self.laws[n], bond=self.laws[n].virgin(), length=phys.initD)
+        self.carried[n] = carried
+        carried.connect(interaction)
+        carried.take_over()
         first, second = O.bodies[interaction.id1].state, O.bodies[interaction.id2].state
-        un = phys.initD - geom.penetrationDepth - (second.vel - first.vel).dot(geom.normal) * O.dt
-        carried = self.carried[n] = Carried(law=law, bond=law.virgin(), length=phys.initD, un=un, Fn=law.kn * un)
-        carried.connect(interaction, phys)
+        geom, bond = carried.geom, carried.bond
+        carried.un = carried.length - geom.penetrationDepth - (second.vel - first.vel).dot(geom.normal) * O.dt
+        carried.Fn = phys.kn * (carried.un - bond.un_plastic)
+        softening = bond.softening
         spent = carried.advance(self._shear_displacement(n, geom, first, second), O.forces)
-        if carried.bond.broken:
-            # A bond that never softened sets free what it held the step before.
+        if bond.softening == softening:
+            # The wire lies within the strength, or where an elastic stiffness changes.
+            self._rest(n, carried)
+            return
+        if bond.broken:
+            # What breaks in the step of its trip sets free what it held the step before.
             spent = phys.strainEnergy - _strain_energy(phys)
-        self._book(n, carried, spent or 0.0)
+        self._book(n, carried, spent)
+
+    def _rest(self, n, carried):
+        """Give a bond that does not yield back to YADE's law; what has softened is as if bonded anew."""
+        if not carried.rest():
+            carried.quiet = 0
+            return
+        del self.carried[n]
+        self.intact[n] = carried.interaction, carried.phys
+        if carried.bond.softening > 0.0:
+            self.resting[n] = carried
+            self._bond_anew(n, carried)
+
+    def _bond_anew(self, n, carried):
+        """Set the normals at bonding such that `_shear_displacement` is the elastic displacement of now."""
+        elastic, normal = carried.trial(), carried.geom.normal
+        angle = elastic.norm() / sum(carried.radii)
+        bonded = normal * math.cos(angle) - elastic.normalized() * math.sin(angle)
+        for side, body in enumerate(carried.bodies):
+            self.normals[n, side] = O.bodies[body].state.ori.conjugate() * bonded
 
     def _shear_displacement(self, n, geom, first, second):
         """Tangential displacement (Vector3, m) of a bond in which nothing has slipped.
@@ -224,14 +324,23 @@ class Bonds(Engine):
         self.cracks.append(Crack(self.clock(), *geom.contactPoint, *geom.normal, 1 if carried.opened else 2,
                                  carried.spent, *self.pairs[n].tolist()))
 
+    def _forget(self, n):
+        self.status[n] = GONE
+        for group in (self.intact, self.broken, self.carried, self.resting):
+            group.pop(n, None)
+
     def let_go(self):
         """Erase broken contacts whose particles are apart, both by radii and by the bond's own length."""
+        bodies = O.bodies
+        erased = [i for i in self.bodies if bodies[i] is None]
+        if erased:
+            self.bodies = [i for i in self.bodies if bodies[i] is not None]
+            for n in np.flatnonzero(np.isin(self.pairs, erased).any(axis=1)).tolist():
+                self._forget(n)
         for n, (interaction, phys) in list(self.broken.items()):
             if interaction.geom.penetrationDepth < min(0.0, phys.initD):
                 O.interactions.erase(interaction.id1, interaction.id2)
-                self.status[n] = GONE
-                del self.broken[n]
-                self.carried.pop(n, None)
+                self._forget(n)
         # The order in which a loaded scene would find them: sums come out equal to the last digit.
         self.broken = dict(sorted(self.broken.items()))
         self.carried = dict(sorted(self.carried.items()))
@@ -267,36 +376,43 @@ class Bonds(Engine):
     def softening(self):
         """(m,) from 0, a virgin bond, to 1, a broken one."""
         found = np.where(self.status == INTACT, 0.0, 1.0)
-        for n, carried in self.carried.items():
-            found[n] = carried.bond.softening
+        for n, softened in (*self.carried.items(), *self.resting.items()):
+            found[n] = softened.bond.softening
         return found
 
     def elastic_energy(self):
         """Strain energy (J) of all bonds and of broken bonds in contact, sum of Fn^2/2kn + Ft^2/2kt."""
-        energy = 0.0
-        for group in (self.intact, self.broken):
-            for _, phys in group.values():
-                energy += _strain_energy(phys)
-        return energy + sum(_strain_energy(carried.phys) for n, carried in self.carried.items() if n not in self.broken)
+        contacts = [phys for group in (self.intact, self.broken) for _, phys in group.values()]
+        contacts += [carried.phys for n, carried in self.carried.items() if n not in self.broken]
+        return math.fsum(map(_strain_energy, contacts))
 
     def state(self):
-        scalars = self.law.virgin().scalars
-        carried = [(n, c.length, c.un, c.Fn, c.spent, *(getattr(c.bond, name) for name in scalars))
-                   for n, c in self.carried.items()]
         return {"status": self.status.copy(), "normals": self.normals.copy(), "energy_released": self.energy_released,
                 "cracks": np.array(self.cracks, float).reshape(-1, len(Crack._fields)),
-                "carried": np.array(carried, float).reshape(-1, 5 + len(scalars))}
+                "carried": self._rows(self.carried), "resting": self._rows(self.resting)}
+
+    def _rows(self, softened):
+        """A row of numbers for each bond with a state of its own."""
+        scalars = self.law.virgin().scalars
+        rows = [(n, c.length, c.un, c.Fn, c.spent, c.quiet, *(getattr(c.bond, name) for name in scalars))
+                for n, c in softened.items()]
+        return np.array(rows, float).reshape(-1, 6 + len(scalars))
 
     def restore(self, state):
         self.status, self.normals = state["status"].copy(), state["normals"].copy()
         self.cracks = [Crack(*row[:7], int(row[7]), row[8], int(row[9]), int(row[10])) for row in state["cracks"].tolist()]
         self.energy_released = float(state["energy_released"])
-        self.carried = {}
-        for n, length, un, Fn, spent, *values in state["carried"].tolist():
-            bond = self.laws[int(n)].virgin()
+        self.carried, self.resting = self._from_rows(state["carried"]), self._from_rows(state["resting"])
+
+    def _from_rows(self, rows):
+        found = {}
+        for n, length, un, Fn, spent, quiet, *values in rows.tolist():
+            law = self.laws[int(n)]
+            bond = law.virgin()
             for name, value in zip(bond.scalars, values):
                 setattr(bond, name, value)
-            self.carried[int(n)] = Carried(law=self.laws[int(n)], bond=bond, length=length, un=un, Fn=Fn, spent=spent)
+            found[int(n)] = Carried(law=law, bond=bond, length=length, un=un, Fn=Fn, spent=spent, quiet=quiet)
+        return found
 
     def log(self):
         modes = [crack.mode for crack in self.cracks]
@@ -359,7 +475,7 @@ class RockFriction(Engine):
             if normal > 0:
                 force = phys.shearForce
                 tangential = force.norm()
-                if tangential > SLIDING * self.bonds.law.mu * normal:
+                if tangential > SLIDING * self.bonds.law.mu * normal and not _lost(interaction):
                     self._book(interaction, self._slip_power(interaction, phys, force, tangential) * elapsed)
         self._share_exact_work()
 

@@ -19,12 +19,22 @@ everything when the contact opens. A bond goes only while it is yielding: compre
 large mu |Fn| grows, because nothing in the bond has slipped.
 """
 import math
+from collections import namedtuple
 
 import numpy as np
 
 from rockwear.kernels.checks import finite, not_negative, positive, require
 
 _ORIGIN = (0.0, 0.0, 0.0)
+_HAIR = 1e-12
+"""Width of a tripwire that is to trip as soon as a force changes its sign, as a fraction of the strength."""
+
+_NARROW = 1e-3
+"""Room in a tripwire, as a fraction of the strength, that is not worth having one."""
+
+Tripwire = namedtuple("Tripwire", "kn kt Fn Ft slope", defaults=(0.0,))
+"""Where a bond is linear elastic: as long as its normal force is at most Fn and its shear force at most
+Ft + slope * (normal force), its forces are kn (un - un_plastic), kt (ut - ut_plastic) with constant kn, kt (N/m)."""
 
 
 class Bond:
@@ -61,8 +71,8 @@ class BondLaw:
     """What every law shares: the contact after breakage, the stored energy, the walk along a path.
 
     A law adds `_bonded(bond, un, ut)`, which returns (Fn, Ft), or None where the bond goes in this step;
-    `_shear(bond, Fn, ut)`, the tangential force as long as nothing slips; `tripwire()`; `scaled(factor)`; and the
-    attributes kt (N/m), Rn and Rt (N): shear stiffness and strengths of a virgin bond.
+    `_shear(bond, Fn, ut)`, the tangential force as long as nothing slips; `scaled(factor)`; `tripwire(bond, Fn, Ft)`
+    if it has one; and the attributes kt (N/m), Rn and Rt (N): shear stiffness and strengths of a virgin bond.
     """
 
     def __init__(self, *, kn, mu):
@@ -72,6 +82,13 @@ class BondLaw:
     def virgin(self):
         """State of a new bond, free of stress."""
         return Bond()
+
+    def tripwire(self, bond, Fn=0.0, Ft=0.0):
+        """Tripwire around the forces of the last step: Fn (N), and Ft (N), the length of the tangential one.
+
+        None where there is no room for one: Fn and Ft are at the limit of what is elastic, or nothing is linear.
+        """
+        return None
 
     def respond(self, bond, un, ut):
         """Forces of `bond` at the opening `un` (m) and the tangential displacement `ut` (sequence of 1 to 3 floats, m).
@@ -145,10 +162,6 @@ class LinearBondLaw(BondLaw):
         self.Rt = positive("Rt", Rt, "N")
         self.H = math.inf if H == math.inf else positive("H", H, "N/m")
 
-    def tripwire(self):
-        """(Fn, Ft) in N: while Fn and |Ft| stay within both, in any combination, a virgin bond is linear elastic."""
-        return self.Rn, self.Rt
-
     def scaled(self, factor):
         """The law of a bond `factor` times as strong: forces and displacements grow alike, every slope stays."""
         law = type(self).__new__(type(self))
@@ -174,6 +187,9 @@ class ElasticBrittle(LinearBondLaw):
 
     def __init__(self, *, kn, kt, Rn, Rt, mu):
         super().__init__(kn=kn, kt=kt, Rn=Rn, Rt=Rt, H=math.inf, mu=mu)
+
+    def tripwire(self, bond, Fn=0.0, Ft=0.0):
+        return Tripwire(self.kn, self.kt, self.Rn, self.Rt)
 
     def _bonded(self, bond, un, ut):
         Fn = self.kn * un
@@ -205,6 +221,26 @@ class ElasticDamage(LinearBondLaw):
         super().__init__(kn=kn, kt=kt, Rn=Rn, Rt=Rt, H=H, mu=mu)
         require(tension_only in (True, False), "tension_only", tension_only, "True or False")
         self.tension_only = bool(tension_only)
+
+    def tripwire(self, bond, Fn=0.0, Ft=0.0):
+        """As far as damage does not grow. A damaged bond opens softer than it closes, so that its wire ends where Fn
+        changes its sign; in tension a slope does that: no shear at Fn = 0, both limits at once at the far end. Where
+        only tension damages, the shear of a damaged bond is without bounds, and without a wire."""
+        left = 1.0 - bond.softening
+        limit_n, limit_t = left * self._onset(bond, self.kn, self.Rn), left * self._onset(bond, self.kt, self.Rt)
+        if bond.softening == 0.0:
+            wire = Tripwire(self.kn, self.kt, limit_n, limit_t)
+        elif self.tension_only:
+            return None
+        elif Fn <= 0.0:
+            wire = Tripwire(self.kn, left * self.kt, _HAIR * self.Rn, limit_t)
+        else:
+            wire = Tripwire(left * self.kn, left * self.kt, limit_n, _HAIR * self.Rt, limit_t / limit_n)
+        return wire if Fn < wire.Fn and Ft < wire.Ft + wire.slope * max(Fn, 0.0) else None
+
+    def _onset(self, bond, k, R):
+        """Force of an undamaged spring at which damage goes on: (4.18-4.19) solved for it."""
+        return R / (1.0 - bond.softening / (1.0 + self.H / k))
 
     def _damage(self, force, k, R):
         """omega of (4.18-4.19) where an undamaged spring would carry `force`."""
@@ -264,13 +300,20 @@ class ElastoPlasticSoftening(LinearBondLaw):
         # (R/k)/w = H/(H + k), in the form that H = inf leaves finite.
         self._loss_n, self._loss_t = 1.0 / (1.0 + self.kn / self.H), 1.0 / (1.0 + self.kt / self.H)
 
-    def tripwire(self):
-        """(Fn, Ft) in N: while Fn and |Ft| stay within both, in any combination, a virgin bond is linear elastic.
-
-        Of the rectangles in the ellipse the one with equal forces: near the lower strength, which is reached first.
-        """
-        force = self.Rn * self.Rt / math.hypot(self.Rn, self.Rt)
-        return force, force
+    def tripwire(self, bond, Fn=0.0, Ft=0.0):
+        """Of the rectangles in the ellipse the one whose corner is as many N from Fn as from Ft; under compression too
+        strong for that, all of the shear strength and next to no tension."""
+        size, u, v = 1.0 - bond.softening, self.Rn, self.Rt
+        corner = _NARROW * size * u
+        # ((Fn + m)/u)^2 + ((Ft + m)/v)^2 = size^2, times (u v)^2
+        a, b = u * u + v * v, Fn * v * v + Ft * u * u
+        root = a * (size * u * v) ** 2 - (u * v * (Fn - Ft)) ** 2
+        if root > 0.0:
+            corner = max(corner, Fn + (math.sqrt(root) - b) / a)
+        limit_t = v * math.sqrt(max(size * size - (corner / u) ** 2, 0.0))
+        wire = Tripwire(self.kn, self.kt, corner, limit_t)
+        room = _NARROW * size
+        return wire if Fn < corner - room * u and Ft < limit_t - room * v else None
 
     def _bonded(self, bond, un, ut):
         Fn = self.kn * (un - bond.un_plastic)
@@ -432,10 +475,6 @@ class NonlinearElastoPlastic(BondLaw):
     def virgin(self):
         """State of a new bond, free of stress."""
         return HardeningBond(self.kt)
-
-    def tripwire(self):
-        """(Fn, Ft) in N as for the other laws: nothing lies within, as kt is nowhere constant."""
-        return -math.inf, 0.0
 
     def _stiffness(self, Fn):
         return self.m * abs(abs(Fn) - self.r) ** (1.0 / 3.0)

@@ -242,6 +242,86 @@ def test_padova_shear_cycle_under_changing_compression_costs_energy(name):
     assert np.diff(dissipated).min() >= -1e-4 * dissipated[-1] and dissipated[-1] > 0.0
 
 
+# Hard cases: nearly vertical softening, one strength far below the other, cycles around the peak
+
+HARD = [(KN, RN, RT, slope) for slope in (1e4 * KN, 1e-2 * KN)] + [
+    (KN, RN, 1e-3 * RN, H), (KN, RN, 1e3 * RN, H), (KN, 1e-3 * RN, 1e-6 * RN, 1e4 * KN), (KN, RN, 1e3 * RN, 1e4 * KN)]
+
+
+def hard(test):
+    """Both softening laws, stiffness, strengths and slope at their extremes."""
+    test = pytest.mark.parametrize("kn, Rn, Rt, slope", HARD)(test)
+    return both_softening(test)
+
+
+def around_the_peak(law, seed, step, count):
+    """A random walk about the peak in both directions, `step` times the displacements of the peak wide at each step.
+
+    It is held back towards a point near the peak and drifts outwards, through tension as through compression.
+    """
+    rng = np.random.default_rng(seed)
+    centre = rng.uniform([-1.0, -1.2], [1.2, 1.2])
+    place, path = np.zeros(2), [np.zeros(2)]
+    for k in range(count):
+        place = place + step * rng.normal(size=2) + min(step, 1.0) * (centre * (1.0 + k / count) - place)
+        path.append(place)
+    return np.array(path) * [law.Rn / law.kn, law.Rt / law.kt]
+
+
+@hard
+@pytest.mark.parametrize("step", [1e-3, 0.1, 5.0])
+def test_hard_cases_stay_within_the_strength(kind, kn, Rn, Rt, slope, step):
+    law = kind(kn=kn, kt=KT, Rn=Rn, Rt=Rt, H=slope, mu=MU)
+    broken = 0
+    for seed in range(3):
+        un, ut = around_the_peak(law, seed, step, 400 if step > 0.01 else 3000).T
+        forces, _, states = follow(law, un, ut[:, None])
+        Fn, Ft = forces.T
+        assert np.isfinite(forces).all() and (np.diff(states, axis=0) >= 0.0).all()
+        assert (Fn <= Rn * (1 + 1e-12)).all() and (Fn >= np.minimum(kn * (un - np.maximum.accumulate(un)), 0) - 1e-9).all()
+        assert (abs(Ft) <= np.maximum(Rt, MU * np.maximum(-Fn, 0.0)) * (1 + 1e-12)).all()
+        gone = states[:, 0] == 1.0
+        broken += gone.any()
+        assert (Fn[gone] <= 0.0).all()
+        assert (abs(Ft[gone]) <= MU * abs(Fn[gone]) * (1 + 1e-9)).all()
+    assert broken > 0 or slope <= H
+
+
+@hard
+def test_hard_cases_give_no_energy_away(kind, kn, Rn, Rt, slope):
+    law = kind(kn=kn, kt=KT, Rn=Rn, Rt=Rt, H=slope, mu=MU)
+    for seed in range(2):
+        un, ut = around_the_peak(law, seed, 3e-3, 3000).T
+        forces, stored, _ = follow(law, un, ut[:, None])
+        steps = np.diff(np.column_stack([un, ut]), axis=0)
+        lost = np.sum(0.5 * (forces[1:] + forces[:-1]) * steps, axis=1) - np.diff(stored)
+        slack = 0.25 * np.sum([kn, KT] * steps**2, axis=1)
+        assert (lost >= -slack - 1e-9 * law.fracture_energy()[0]).all()
+        assert lost.sum() >= -1e-9 * law.fracture_energy()[0]
+
+
+@hard
+@pytest.mark.parametrize("axis", [0, 1])
+@pytest.mark.parametrize("seed", range(3))
+def test_cycles_around_the_peak_cost_exactly_the_fracture_energy(kind, kn, Rn, Rt, slope, axis, seed):
+    """Loaded further and further, unloaded in between: the work is exact, for every force is a line between corners."""
+    law, rng = kind(kn=kn, kt=KT, Rn=Rn, Rt=Rt, H=slope, mu=MU), np.random.default_rng(seed)
+    k, R = (kn, Rn) if axis == 0 else (KT, Rt)
+    peak, corners = R / k, [0.0, 0.7 * R / k, 0.2 * R / k, R / k]
+    for part in np.sort(rng.uniform(size=10)):
+        reached = peak + part * R / slope
+        force = R - slope * (reached - peak)
+        # back, at most to where an elasto-plastic bond is free of stress, and to the same place again
+        corners += [reached, reached - rng.uniform() * force / k, reached]
+    corners += [(peak + R / slope) * (1 + 1e-12), 2 * (peak + R / slope)]
+    path = np.concatenate([np.sort(np.append(rng.uniform(min(a, b), max(a, b), rng.integers(0, 6)), a))[::1 if b >= a else -1]
+                           for a, b in zip(corners, corners[1:])] + [corners[-1:]])
+    forces = law.drive(*((path, 0 * path) if axis == 0 else (0 * path, path)))[axis]
+    work = np.sum(0.5 * (forces[1:] + forces[:-1]) * np.diff(path))
+    assert work == pytest.approx(law.fracture_energy()[axis], rel=1e-6)
+    assert forces[-1] == 0.0
+
+
 # The limit of no softening
 
 @both_softening
@@ -358,16 +438,55 @@ def test_turning_state_and_displacement_on_the_way_turns_the_force(law, turn_at)
             assert math.dist(shear, (x, y) if step < turn_at else (-y, x)) <= TOLERANCE * RN
 
 
-@pytest.mark.parametrize("law", [law for law in LAWS.values() if law.tripwire()[0] > -math.inf])
-def test_inside_the_tripwire_a_virgin_bond_is_linear(law):
-    Fn_limit, Ft_limit = law.tripwire()
-    Ft_limit = min(Ft_limit, 1e3 * RT)
-    for Fn in (-1e3 * RN, -RN, 0.0, (1 - 1e-12) * Fn_limit):
-        for Ft in (0.0, (1 - 1e-12) * Ft_limit):
-            bond = law.virgin()
-            answer, (shear,) = law.respond(bond, Fn / law.kn, (Ft / law.kt,))
-            assert (answer, shear) == pytest.approx((Fn, Ft), rel=1e-12)
-            assert bond.softening == 0.0
+@pytest.mark.parametrize("name", ["brittle", "damage", "damage by tension only"])
+def test_the_tripwire_of_a_virgin_bond_is_its_strength(name):
+    wire = LAWS[name].tripwire(LAWS[name].virgin())
+    assert wire == (KN, KT, RN, RT, 0.0)
+
+
+def test_the_tripwire_of_a_virgin_elastoplastic_bond_has_its_corner_on_the_ellipse():
+    wire = LAWS["elasto-plastic"].tripwire(LAWS["elasto-plastic"].virgin())
+    assert wire.Fn == pytest.approx(wire.Ft, rel=1e-12)
+    assert (wire.Fn / RN) ** 2 + (wire.Ft / RT) ** 2 == pytest.approx(1.0, rel=1e-12)
+
+
+def test_a_law_that_is_nowhere_linear_has_no_tripwire():
+    law = NonlinearElastoPlastic()
+    assert law.tripwire(law.virgin()) is None
+
+
+@pytest.mark.parametrize("name", ["brittle", "damage", "damage by tension only", "elasto-plastic"])
+@pytest.mark.parametrize("seed", range(10))
+def test_inside_the_tripwire_a_bond_is_linear_wherever_it_has_been(name, seed):
+    """On the way along a random path: forces anywhere within the wire are those of constant springs."""
+    law, rng = LAWS[name], np.random.default_rng(100 + seed)
+    un, ut = random_path(seed, 1, steps=60)
+    bond, wires = law.virgin(), 0
+    for opening, shift in zip(un.tolist(), ut[:, 0].tolist()):
+        Fn, (Ft,) = law.respond(bond, opening, (shift,))
+        if bond.broken:
+            break
+        wire = law.tripwire(bond, Fn, abs(Ft))
+        if wire is None:
+            continue
+        wires += 1
+        assert Fn <= wire.Fn and abs(Ft) <= wire.Ft + wire.slope * Fn
+        assert wire.kn * (opening - bond.un_plastic) == pytest.approx(Fn, rel=1e-9, abs=TOLERANCE * RN)
+        assert wire.kt * (shift - bond.ut_plastic[0]) == pytest.approx(Ft, rel=1e-9, abs=TOLERANCE * RN)
+        for compression in rng.uniform(0.0, 5 * RN, 4):
+            for normal in (wire.Fn * rng.uniform(), wire.Fn * (1 - 1e-12), -compression):
+                limit = min(wire.Ft + wire.slope * normal, 20 * RT)
+                if limit < 0.0:
+                    continue
+                shear = limit * rng.uniform(-1.0, 1.0) * rng.choice([1.0, 1 - 1e-12])
+                copy = law.virgin()
+                for field in ("softening", "un_plastic", "ut_plastic"):
+                    setattr(copy, field, getattr(bond, field))
+                answer = law.respond(copy, bond.un_plastic + normal / wire.kn, (bond.ut_plastic[0] + shear / wire.kt,))
+                assert_close(answer[0], normal)
+                assert_close(answer[1][0], shear)
+                assert copy.softening <= bond.softening + 1e-12
+    assert wires > 0
 
 
 # The Padova law by itself

@@ -197,7 +197,7 @@ def broken_on_purpose():
                 self._book(n, carried, spent)
         tripped = [n for n, (_, phys) in self.intact.items() if not phys.isCohesive]
         for n in [n for n in tripped if getattr(self, "seen", None) == n]:
-            self._trip(n, *self.intact.pop(n))
+            self._trip(n)
         self.seen = tripped[0] if tripped else None
 
     def no_friction(self):
