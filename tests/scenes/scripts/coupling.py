@@ -31,6 +31,8 @@ KN, KT, MU, ALPHA, D = 20e9, 5e9, 0.5, 1e-5, 2e-3
 E = 2 * math.sqrt(3) * KN * (KN + KT) / (3 * KN + KT)
 UNBREAKABLE = ElasticBrittle(kn=KN, kt=KT, Rn=1e12, Rt=1e12, mu=MU)
 
+NO_PATHS = np.empty((0, 2), int), np.empty(0)
+
 
 def arranged(positions, radii=D / 2, pairs=None, held=()):
     """Discs at given places, those that touch bonded."""
@@ -246,7 +248,7 @@ def two_spinning(period, duration=0.02):
     untouched = SimpleNamespace(take_heating=lambda: (np.empty(0), np.zeros(2), {}))
     heat = Heat(network=network, bonds=bonds, rock_friction=friction, tool_contact=untouched, rock=rock, tool=nothing,
                 heat_fraction=chi, tool_share=0.5, contact_conductance=0.0, convection=0.0, ambient=300.0,
-                rock_conductance=0.0, tool_conductance=0.0, surface_period=1.0, conduction=False)
+                rock_paths=NO_PATHS, tool_paths=NO_PATHS, surface_period=1.0, conduction=False)
     expansion = Expansion(coefficient=alpha, rock=rock, reference=300.0, temperature=lambda: network.temperature,
                           bonds=bonds, loose=lambda: friction.contacts)
     O.run(10, True)
@@ -306,7 +308,7 @@ def sliding_block():
     share, chi = effusivity_share(e_tool, e_rock), 0.85
     heat = Heat(network=network, bonds=bonds, rock_friction=friction, tool_contact=contact, rock=rock, tool=tool,
                 heat_fraction=chi, tool_share=share, contact_conductance=0.0, convection=0.0, ambient=300.0,
-                rock_conductance=0.0, tool_conductance=0.0, surface_period=1.0, conduction=False)
+                rock_paths=NO_PATHS, tool_paths=NO_PATHS, surface_period=1.0, conduction=False)
     O.dt = 1e-8
     engines.enlist([contact, friction, heat])
     O.engines = (O.engines[:-1] + engines.runners({"tool_contact": 1, "rock_friction": 4}) + O.engines[-1:]
