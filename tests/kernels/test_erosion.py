@@ -71,6 +71,35 @@ def test_excess_crosses_a_gap_to_the_nearest_and_no_further():
     assert body.stored[4] - before[4] == pytest.approx(0.5 * 4 * R * R) and body.stored[5] == before[5]
 
 
+@pytest.mark.parametrize("gone", [[], [1, 3, 5], [1, 2, 3], [1, 2, 3, 4, 5], [1, 2, 3, 4, 5, 6]])
+def test_a_particle_with_part_of_its_neighbours_gone_hands_on_to_the_living_only(gone):
+    """The middle one of seven hexagonal discs; beyond each neighbour there is one more."""
+    spokes = [(0, i) for i in range(1, 7)] + [(i, i % 6 + 1) for i in range(1, 7)] + [(i, i + 6) for i in range(1, 7)]
+    cell = 4 * R * R
+    body = Erosion(radii=np.full(13, R), volumes=np.full(13, cell), pairs=spokes, skin=[0], anchored=range(7, 13))
+    body.drop(gone)
+    volume = np.zeros(13)
+    volume[0] = 1.6 * cell
+    removed, uncovered = body.wear(volume)
+    left = [i for i in range(1, 7) if i not in gone]
+    heirs = left or list(range(7, 13))
+    assert removed == [0] and uncovered == left
+    assert body.stored[heirs] == pytest.approx(0.6 * cell / len(heirs), rel=1e-12)
+    assert body.stored.sum() == pytest.approx(0.6 * cell, rel=1e-12)
+    assert abs(body.volume_balance()["unexplained"]) < 1e-12 * cell
+
+
+def test_very_large_wear_in_one_visit_eats_through_to_its_volume():
+    """1000 visits' wear at once: as many whole particles go, and the last is worn in part."""
+    body = block(40, 5)
+    volume = np.zeros(200)
+    volume[2] = 100.25 * 4 * R * R
+    removed, uncovered = body.wear(volume)
+    book = body.volume_balance()
+    assert 90 < len(removed) == (~body.alive).sum() <= 100 and set(uncovered) <= set(np.flatnonzero(body.alive))
+    assert abs(book["unexplained"]) < 1e-12 * book["archard"] and np.all(body.stored[body.alive] < 4 * R * R)
+
+
 def test_depth_rule_passes_nothing_on():
     body = block(5, 1, "depth")
     removed, _ = body.wear(np.array([2.25 * 4 * R * R, 0, 0, 0, 0]))

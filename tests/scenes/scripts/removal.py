@@ -1,0 +1,78 @@
+"""What a removal does to the cut: overlaps that uncovered particles come into the world with, and a tooth sawn in two.
+
+    yade -n -x removal.py --saw false|true [--name value ...]      writes one line of JSON
+"""
+import json
+import os
+import sys
+
+ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(sys.argv[0])))))
+sys.path.insert(0, ROOT)
+
+import numpy as np  # noqa: E402
+from scipy.spatial import cKDTree  # noqa: E402
+from yade import O  # noqa: E402
+
+from rockwear import parameters  # noqa: E402
+from rockwear.cutting import PARAMETERS, Cutting  # noqa: E402
+from rockwear.kernels.wear_laws import WORK  # noqa: E402
+from rockwear.parameters import Parameter, flag  # noqa: E402
+
+BAND = 1.5e-3, 3e-3
+"""Heights in the tool's own frame (m) between which the saw takes everything away: below all that the shank holds."""
+
+
+class Saw:
+    """In place of a wear law: wears the band away in one visit."""
+
+    def volume(self, slid, hardness, area):
+        y = scene.tool.positions[:, 1]
+        return np.where((y > BAND[0]) & (y < BAND[1]), scene.tool.volumes, 0.0)
+
+
+def place(index):
+    return np.array(O.bodies[scene.bodies.body_of[int(index)]].state.pos)[:2]
+
+
+def overlaps(indices):
+    """Overlaps (m) with rock of tool particles that are there now."""
+    rock = scene.rock.current_positions()
+    tree = cKDTree(rock)
+    for i in indices:
+        here, reach = place(i), scene.tool.radii[i]
+        for j in tree.query_ball_point(here, reach + scene.rock.radii.max()):
+            yield reach + scene.rock.radii[j] - np.linalg.norm(rock[j] - here)
+
+
+def spy(add):
+    def watched(indices):
+        add(indices)
+        found.extend(o for o in overlaps(indices) if o > 0)
+    return watched
+
+
+values = parameters.read([*PARAMETERS, Parameter("saw", False, "", flag, "saw the tooth in two half-way")], sys.argv[1:])
+scene, found = Cutting(values), []
+scene.build()
+scene.bodies.add = spy(scene.bodies.add)
+sawn = not values["saw"]
+below = []
+while not scene.stage_done:
+    scene.run_chunk()
+    if not sawn and scene.step > scene.stages[0][1] // 2:
+        law, scene.wear.law = scene.wear.law, Saw()
+        scene.contact.slid[WORK][0] += 1e-9
+        scene.wear.act()
+        scene.wear.law, sawn = law, True
+        low = np.flatnonzero(scene.tool.positions[:, 1] < BAND[0])
+        below = [int(np.sum(scene.tool.erosion.alive[low])), sum(int(i) in scene.bodies.body_of for i in low),
+                 sum(index in low for _, index, _, _ in scene.contact.possible)]
+scene.wear.act()
+if scene.heat:
+    scene.heat.act()
+audits = {name: book for name, (book, _) in scene.audits().items()}
+print("JSON" + json.dumps({"removed": int(np.sum(~scene.tool.erosion.alive)), "overlaps": found, "below": below,
+                           "audits": audits, "stored_heat": float(scene.heat.network.heat_content)},
+                          default=lambda x: x.item()))
+sys.stdout.flush()
+os._exit(0)

@@ -1,0 +1,36 @@
+"""Removal while the tool is in contact: no kick, no lost heat or mass; and a tooth cut in two does not go on cutting."""
+import json
+
+from .conftest import ROOT, SMALL, arguments, run_script
+
+SCRIPT = ROOT / "tests/scenes/scripts/removal.py"
+CUT = {name: value for name, value in SMALL.items() if name != "snapshot_period"}
+
+
+def removal(**values):
+    run = run_script(SCRIPT, *arguments({**CUT, "cycles": 0, **values}))
+    assert run.code == 0, run.stderr
+    return json.loads(next(line for line in run.stdout.splitlines() if line.startswith("JSON"))[4:])
+
+
+def books_close(audits):
+    energy, heat, mass = audits["energy"], audits["heat"], audits["mass"]
+    assert energy["tool_work"] > 50 and abs(energy["residual"]) < 0.03 * energy["tool_work"]
+    assert abs(heat["residual"]) < 1e-5
+    assert abs(mass["unexplained"]) < 1e-12 * mass["initial"]
+
+
+def test_uncovered_particles_come_without_a_push():
+    """What has just been uncovered overlaps no rock: no force from nowhere, and the energy that contacts take with them
+    is in the book."""
+    found = removal(acceleration=3e6, start_up=1.2e-3)
+    assert found["removed"] > 50 and found["overlaps"] == []
+    books_close(found["audits"])
+    assert 0 < found["audits"]["energy"]["removed_contacts"] < 0.1 * found["audits"]["energy"]["tool_work"]
+
+
+def test_a_tooth_cut_in_two_goes_on_with_the_piece_that_is_held():
+    found = removal(saw="true", acceleration=100, start_up=1.2e-3)
+    assert found["below"] == [0, 0, 0]
+    assert found["audits"]["mass"]["dropped_pieces"] > 0.005 * found["audits"]["mass"]["initial"]
+    books_close(found["audits"])
