@@ -200,6 +200,77 @@ def test_ground_is_a_bond_to_a_fixed_particle():
     assert alone == pytest.approx(2 / math.sqrt(9e10 / 3), rel=1e-5)
 
 
+def damped(dashpot, **changes):
+    """Two discs alike with a normal spring, and a dashpot as a fraction of the critical one of their mode."""
+    return equal_discs([[0, 0], [1, 0]], [[0, 1]], cn=dashpot * 2 * math.sqrt(2e10 * 1.5), **changes)
+
+
+@pytest.mark.parametrize("ratio", [0.1, 0.9, 3.0])
+def test_a_dashpot_on_one_mode(ratio):
+    """M (3.37) is exact there, and a spring of 2 cn/Δt costs the same."""
+    expected = (math.sqrt(1 + ratio**2) - ratio) * damped(0.0)
+    assert damped(ratio) == pytest.approx(expected, rel=3e-6) and damped(ratio) <= expected
+    cn = ratio * 2 * math.sqrt(2e10 * 1.5)
+    assert equal_discs([[0, 0], [1, 0]], [[0, 1]], kn=2e10 + 2 * cn / expected) == pytest.approx(expected, rel=3e-6)
+
+
+def test_a_dashpot_alone():
+    """M v⁺ = M v⁻ − Δt C v⁻ of two discs: stable up to Δt = m/cn."""
+    assert equal_discs([[0, 0], [1, 0]], [[0, 1]], kn=0.0, cn=1e5) == pytest.approx(3.0 / 1e5, rel=3e-6)
+    assert equal_discs([[0, 0], [1, 0]], [[0, 1]], kn=0.0, cn=1e5, fixed=[0, 1]) == math.inf
+
+
+def test_a_dashpot_of_the_ground_is_that_of_a_fixed_particle():
+    x, direction = [[0, 0], [1, 0]], np.array([0.6, 0.8])
+    grounded = equal_discs(x, [[0, 1]], kt=4e9, ground=([1], [direction], 9e10, 3e10, 6e5))
+    bonded = equal_discs([*x, x[1] + direction], [[0, 1], [1, 2]], kn=[2e10, 9e10], kt=[4e9, 3e10], fixed=[2], cn=[0, 6e5])
+    assert grounded == pytest.approx(bonded, rel=1e-9)
+    assert grounded < 0.9 * equal_discs(x, [[0, 1]], kt=4e9, ground=([1], [direction], 9e10, 3e10))
+
+
+def spectral_radius(s, step, kn, kt, cn):
+    """Of one step of v⁺ = v − Δt M⁻¹(K x + C v), x⁺ = x + Δt v⁺: all its eigenvalues, by another way than the kernel."""
+    mass = lumped(s["masses"], s["inertias"], 2)
+    k = energy_stiffness(s["positions"], s["radii"], s["bonds"], kn, kt) / mass[:, None]
+    c = sum(energy_stiffness(s["positions"], s["radii"], [bond], cn_one, 0.0) / mass[:, None]
+            for bond, cn_one in zip(s["bonds"], cn) if cn_one)
+    one = np.eye(len(mass))
+    velocity = np.hstack([-step * k, one - step * c])
+    return abs(np.linalg.eigvals(np.vstack([np.hstack([one, 0 * one]) + step * velocity, velocity]))).max()
+
+
+@pytest.mark.parametrize("dense", [False, True])
+def test_contacts_with_and_without_dashpots(monkeypatch, dense):
+    """The largest multiplier of a step passes 1 at the critical one, dashpots of any size on a tenth of the bonds."""
+    if dense:
+        monkeypatch.setattr(stability, "DENSE", 100_000)
+    s, rng = specimen(2), np.random.default_rng(4)
+    cn = np.where(rng.uniform(size=len(s["bonds"])) < 0.1, rng.uniform(0, 3e6, len(s["bonds"])), 0.0)
+    step = critical_time_step(**s, kn=2e10, kt=4e9, cn=cn)
+    assert step < 0.8 * critical_time_step(**s, kn=2e10, kt=4e9)
+    assert spectral_radius(s, step, 2e10, 4e9, cn) < 1 + 1e-7
+    assert spectral_radius(s, (1 + 1e-4) * step, 2e10, 4e9, cn) > 1 + 1e-5
+
+
+@pytest.mark.parametrize("dimensions", [2, 3])
+def test_free_of_ratcheting(dimensions):
+    """K from YADE's shear increment on one side and its forces on the other, unequal particles that overlap."""
+    s = specimen(dimensions)
+    s["radii"] = 1.05 * s["radii"]
+    x, r, kn, kt = s["positions"], s["radii"], 2e10, 2e10
+    i, j = s["bonds"].T
+    distance = np.linalg.norm(x[j] - x[i], axis=1)
+    alpha, half, ones = (r[i] + r[j]) / distance, 0.5 * (r[i] + r[j] - distance), np.ones(len(i))
+    normal = (x[j] - x[i]) / distance[:, None]
+    seen = stability._rows(len(x), i, j, normal, r[i] / alpha, r[j] / alpha, kn * ones, kt * alpha)
+    pushed = stability._rows(len(x), i, j, normal, r[i] - half, r[j] - half, kn * ones, kt * alpha)
+    stiffness = (pushed.T @ seen).toarray() / lumped(s["masses"], s["inertias"], dimensions)[:, None]
+    exact = 2 / math.sqrt(np.linalg.eigvals(stiffness).real.max())
+    found = critical_time_step(**s, kn=kn, kt=kt, ratcheting_free=True)
+    assert found == pytest.approx(exact, rel=1e-4)
+    assert found < 0.98 * critical_time_step(**s, kn=kn, kt=kt)
+
+
 @pytest.mark.parametrize("change, name", [
     ({"positions": [0.0, 1.0]}, "positions"), ({"positions": [[0, 0], [math.nan, 0]]}, "positions"),
     ({"radii": [1.0]}, "radii"), ({"radii": [1, 0]}, "radii"), ({"masses": [1, -1]}, "masses"),
@@ -207,6 +278,7 @@ def test_ground_is_a_bond_to_a_fixed_particle():
     ({"bonds": [[0, -1]]}, "bonds"), ({"bonds": [0, 1]}, "bonds"), ({"bonds": [[0.0, 1.0]]}, "bonds"),
     ({"bonds": [[1, 1]]}, "bonds"), ({"kn": -1.0}, "kn"), ({"kn": [1.0, 2.0]}, "kn"), ({"kt": math.nan}, "kt"),
     ({"fixed": [2]}, "fixed"), ({"damping_ratio": -0.1}, "damping_ratio"),
+    ({"cn": -1.0}, "cn"), ({"cn": [0.0, 0.0]}, "cn"), ({"ground": ([0], [[0, 1]], 1.0, 0.0, -1.0)}, "ground"),
     ({"ground": ([0], [[0, 0]], 1.0, 0.0)}, "ground"), ({"ground": ([5], [[0, 1]], 1.0, 0.0)}, "ground"),
     ({"ground": ([0], [[0, 1, 0]], 1.0, 0.0)}, "ground"), ({"ground": ([0], [[0, 1]], -1.0, 0.0)}, "ground"),
 ])
