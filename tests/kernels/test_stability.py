@@ -228,6 +228,18 @@ def test_a_dashpot_of_the_ground_is_that_of_a_fixed_particle():
     assert grounded < 0.9 * equal_discs(x, [[0, 1]], kt=4e9, ground=([1], [direction], 9e10, 3e10))
 
 
+def test_a_spring_and_a_dashpot_at_right_angles_and_askew():
+    """One disc: at right angles each has its own limit; askew, Δt² K + 2 Δt C of two degrees of freedom has it."""
+    m, kn, cn = 3.0, 2e10, 2e5
+    for angle in (0.5 * math.pi, 0.3 * math.pi):
+        n = np.array([math.cos(angle), math.sin(angle)])
+        step = critical_time_step(positions=[[0, 0], [1, 0], n], radii=[0.5] * 3, masses=[m] * 3, inertias=[0.375] * 3,
+                                  bonds=[[0, 1], [0, 2]], kn=[kn, 0.0], kt=0.0, cn=[0.0, cn], fixed=[1, 2])
+        both = step**2 * kn * np.diag([1.0, 0.0]) + 2 * step * cn * np.outer(n, n)
+        assert np.linalg.eigvalsh(both).max() == pytest.approx(4 * m, rel=5e-6)
+    assert step < 0.9 * min(2 / math.sqrt(kn / m), 2 * m / cn)
+
+
 def spectral_radius(s, step, kn, kt, cn):
     """Of one step of v⁺ = v − Δt M⁻¹(K x + C v), x⁺ = x + Δt v⁺: all its eigenvalues, by another way than the kernel."""
     mass = lumped(s["masses"], s["inertias"], 2)
