@@ -62,11 +62,11 @@ def test_figure_and_table_of_a_run(cases, tmp_path):
 
 
 def lattice_modulus(out, **values):
-    """E of a triangular lattice with kt = kn/5 and Cundall's damping, over the exact one; loaded fast."""
+    """E of a triangular lattice with kt = kn/5 and Cundall's damping, over the exact one; long enough for chatter."""
     kn, kt = 20e9, 4e9
-    fast = dict(kn=kn, kt=kt, Rn=1e12, Rt=1e12, strain_max=2e-5, record_strain=5e-7, speed=0.02, gauge=0.3, damping=0.3,
-                report="false")
-    run = run_script(EXACT, *arguments({**fast, **values}), "--out", str(out), out=out)
+    lattice = dict(kn=kn, kt=kt, Rn=1e12, Rt=1e12, strain_max=4e-4, record_strain=2e-6, speed=0.01, gauge=0.3,
+                   damping=0.3, report="false")
+    run = run_script(EXACT, *arguments({**lattice, **values}), "--out", str(out), out=out)
     assert run.code == 0, run.stderr
     return run.summary["results"]["youngs_modulus"]["value"] / (2 * math.sqrt(3) * kn * (kn + kt) / (3 * kn + kt))
 
@@ -74,4 +74,4 @@ def lattice_modulus(out, **values):
 def test_the_default_step_of_the_laboratory_is_short_enough_for_its_damping(tmp_path):
     """Long before a step blows up, Cundall's damping makes discs chatter, and the specimen too stiff."""
     assert lattice_modulus(tmp_path / "default") == pytest.approx(1.0, abs=1e-3)
-    assert lattice_modulus(tmp_path / "longer", time_step_fraction=0.8) > 1.003
+    assert lattice_modulus(tmp_path / "longer", time_step_fraction=0.8) > 1.005
