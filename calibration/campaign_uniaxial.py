@@ -179,7 +179,8 @@ def likeness(maps):
             same[case].append(figures.alike(density, maps[cases[0], seed]))
         other += [figures.alike(density, there) for (name, k), there in maps.items() if name == case and k > seed]
     lines = [[f"{case} and {cases[0]}, same packing", shown(values, 1, 2)] for case, values in same.items()]
-    return table(["cracks in the same places", "correlation"], lines + [["one law, different packings", shown(other, 1, 2)]])
+    lines.append(["one law, different packings", shown(other, 1, 2)])
+    return table(["cracks in the same places", "correlation"], lines)
 
 
 # ---- the page
@@ -211,17 +212,19 @@ def mean_and_error(rows, case):
 def write(folder):
     """Tables and figures of all runs that are there."""
     runs = {campaign: found(folder, campaign) for campaign in CAMPAIGNS}
-    rows = {campaign: [figures.row_of(campaign, *key, run) for key, run in done.items()] for campaign, done in runs.items()}
+    rows = {campaign: [figures.row_of(campaign, *key, run) for key, run in done.items()]
+            for campaign, done in runs.items()}
     figures.write_csv(folder / "uniaxial.csv", [row for part in rows.values() for row in part])
     lines = []
-    for campaign, (_, _, seeds) in CAMPAIGNS.items():
+    for campaign in CAMPAIGNS:
         if rows[campaign]:
             lines += [f"### {TITLES[campaign]}", "", *strengths(rows[campaign])]
     for campaign in ("laws", "small"):
         if rows[campaign]:
             maps = {(case, seed): figures.crack_map(run) for (case, test, seed), run in runs[campaign].items()
                     if test == "compression"}
-            lines += [f"### {TITLES[campaign]}: against the brittle law", "", *against(rows[campaign], "brittle"), *likeness(maps)]
+            lines += [f"### {TITLES[campaign]}: against the brittle law", "", *against(rows[campaign], "brittle"),
+                      *likeness(maps)]
     (folder / "tables.md").write_text("\n".join(lines))
     with matplotlib.rc_context(plots.STYLE):
         for name, figure in drawn(runs, rows).items():
@@ -231,36 +234,41 @@ def write(folder):
 
 def drawn(runs, rows):
     """{name: Figure}."""
-    full = {**runs["laws"], **runs["softening"]}
-    by_case = defaultdict(list)
-    for (case, test, _), run in sorted(full.items(), key=lambda item: item[0][2]):
-        if test == "compression":
-            by_case[case].append(run)
-
-    def series(law):
-        return [case for _, case in sorted(slope_cases()[law].items(), reverse=True) if case in by_case]
-
-    found = {}
-    if set(MAIN) <= set(by_case):
-        groups = {"M's three laws (thin: other packings)": {case: by_case[case] for case in MAIN},
-                  **{f"{law}: softening slope H": {case: by_case[case][:1] for case in series(law)}
-                     for law in ("damage", "plastic")}}
-        found["stress_strain"] = figures.stress_strain(groups)
-        for name, cases in (("laws", MAIN), ("damage", series("damage")[1:]), ("plastic", series("plastic"))):
-            found[f"failure_{name}"] = figures.failures({case: by_case[case][0] for case in cases})
+    found = {**of_laws({**runs["laws"], **runs["softening"]}, ""), **of_laws(runs["small"], "_small")}
     if rows["small"]:
         found["over_softening"] = figures.over_softening(rows["small"], slope_cases())
     if rows["factors"]:
-        both = rows["factors"] + rows["combined"]
-        cases = list(dict.fromkeys(row["case"] for row in both))
-        found["sandstone_factors"] = figures.factors({case: mean_and_error(both, case) for case in cases}, cases, P_ROCK)
+        groups = {"factors": "", "combined": "", "sandstone": "2100 discs: ", "closest": "2100 discs: "}
+        values = {f"{words}{case}": mean_and_error(rows[campaign], case) for campaign, words in groups.items()
+                  for case in dict.fromkeys(row["case"] for row in rows[campaign])}
+        found["sandstone_factors"] = figures.factors(values, P_ROCK)
     return found
+
+
+def of_laws(runs, suffix):
+    """Stress over strain and failure of M's cases, as far as they are there; the failures are the first packing's."""
+    by_case = defaultdict(list)
+    for (case, test, _), run in sorted(runs.items(), key=lambda item: item[0][2]):
+        if test == "compression":
+            by_case[case].append(run)
+    if not set(MAIN) <= set(by_case):
+        return {}
+    slopes = {law: [case for _, case in sorted(cases.items(), reverse=True) if case in by_case]
+              for law, cases in slope_cases().items()}
+    groups = {"three laws (thin: other packings)": {case: by_case[case] for case in MAIN},
+              **{f"{law}, softening slope H in N/m": {case: by_case[case][:1] for case in cases}
+                 for law, cases in slopes.items()}}
+    failed = {"laws": MAIN, "damage": slopes["damage"][1:], "plastic": slopes["plastic"]}
+    return {f"stress_strain{suffix}": figures.stress_strain(groups),
+            **{f"failure_{name}{suffix}": figures.failures({case: by_case[case][0] for case in cases})
+               for name, cases in failed.items()}}
 
 
 def write_curves(path, runs):
     """Thinned stress-strain curves of the first packing."""
     figures.write_csv(path, [
-        {"case": case, "test": test, "platen_strain": strain, "axial_strain": axial, "lateral_strain": lateral, "stress_Pa": stress}
+        {"case": case, "test": test, "platen_strain": strain, "axial_strain": axial, "lateral_strain": lateral,
+         "stress_Pa": stress}
         for (case, test, seed), run in runs.items() if seed == 1
         for strain, axial, lateral, stress in zip(*(figures.thinned(run.column(name)).tolist() for name in (
             "platen_strain", "axial_strain", "lateral_strain", "stress")))])

@@ -29,8 +29,8 @@ def measure(folder, at_once=2):
     """{(rock, test, quantity): (seeds, speeds) values in Pa}; finished runs are kept."""
     with Runs(folder, at_once=at_once, keep=True) as runs:
         jobs = {(rock, test, seed, speed): runs.start(
-                    folder_of(rock, test, f"{seed}-{speed:g}"), SCRIPT, test=test, seed=seed, speed=speed, report="false",
-                    snapshot_period=1, **{**SMALL, **values})
+                    folder_of(rock, test, f"{seed}-{speed:g}"), SCRIPT, test=test, seed=seed, speed=speed,
+                    report="false", snapshot_period=1, **{**SMALL, **values})
                 for seed in SEEDS for speed in SPEEDS for rock, values in ROCKS.items() for test in TESTS}
         found = {key: job.result() for key, job in jobs.items()}
     return {(rock, test, quantity): np.array(
@@ -39,7 +39,7 @@ def measure(folder, at_once=2):
 
 
 def deviations(measured):
-    """Rows {rock, test, quantity, speed, deviation, error}: mean over seeds from the slowest, and its standard error."""
+    """Rows {rock, test, quantity, speed, deviation, error}: mean over packings from the slowest, its standard error."""
     rows = []
     for (rock, test, quantity), values in measured.items():
         off = values / values[:, -1:] - 1
@@ -83,8 +83,8 @@ def draw(rows):
 
 def markdown(rows):
     """The table, as lines."""
-    lines = [f"Speed of loading: deviation from {SPEEDS[-1]:g} m/s in %, mean of {len(SEEDS)} packings of 525 discs ± its "
-             f"standard error. The fastest within {100 * TOLERANCE:g} % in everything: {fastest(rows):g} m/s.", "",
+    lines = [f"Speed of loading: deviation from {SPEEDS[-1]:g} m/s in %, mean of {len(SEEDS)} packings of 525 discs ± "
+             f"its standard error. The fastest within {100 * TOLERANCE:g} % in everything: {fastest(rows):g} m/s.", "",
              "| m/s | " + " | ".join(f"{speed:g}" for speed in SPEEDS) + " |", "|---" * (len(SPEEDS) + 1) + "|"]
     for rock, test, quantity in dict.fromkeys((row["rock"], row["test"], row["quantity"]) for row in rows):
         cells = [f"{100 * row['deviation']:+.1f} ± {100 * row['error']:.1f}" for row in rows

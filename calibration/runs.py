@@ -13,9 +13,10 @@ class RunFailed(RuntimeError):
 
 
 class Runs:
-    """Runs in subfolders of `folder`, `at_once` at a time. With `keep`, finished ones of the same values stay as they are.
+    """Runs in subfolders of `folder`, `at_once` at a time.
 
-    Use it as a context: an exception within lets the runs under way end, and starts no others.
+    With `keep`, finished ones of the same values stay as they are. Use it as a context: an exception within
+    lets the runs under way end, and starts no others.
     """
 
     def __init__(self, folder, *, at_once=2, keep=False):

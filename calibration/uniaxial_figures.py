@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.collections import LineCollection
 from scipy.ndimage import gaussian_filter
 
-from rockwear.report import shapes
+from rockwear.report import plots, shapes
 from rockwear.report.plots import MM, canvas, discs, frame
 
 RESULTS = ["peak_stress", "peak_strain", "youngs_modulus", "poissons_ratio", "tensile_cracks", "shear_cracks",
@@ -77,7 +77,7 @@ def alike(first, second):
 
 def thinned(values):
     """At most CURVE_POINTS of them, evenly spread."""
-    return values[np.unique(np.linspace(0, len(values) - 1, CURVE_POINTS).round().astype(int))] if len(values) else values
+    return np.array(plots.spread(values, CURVE_POINTS))
 
 
 def stress_strain(panels):
@@ -145,8 +145,8 @@ def over_softening(rows, cases):
     for axes, test in zip(panels, ("compression", "tension")):
         for k, (law, names) in enumerate(cases.items()):
             slopes = sorted(names)
-            groups = [[1e-6 * row["peak_stress"] for row in rows if (row["case"], row["test"]) == (names[H], test)] or [math.nan]
-                      for H in slopes]
+            groups = [[1e-6 * row["peak_stress"] for row in rows
+                       if (row["case"], row["test"]) == (names[H], test)] or [math.nan] for H in slopes]
             finite = [H for H in slopes if math.isfinite(H)]
             places = [H if math.isfinite(H) else 5 * max(finite) for H in slopes]
             axes.plot(places, [np.mean(group) for group in groups], "o-", color=f"C{k}", label=law)
@@ -158,18 +158,20 @@ def over_softening(rows, cases):
     return figure
 
 
-def factors(rows, cases, wanted):
-    """One change at a time: a row a case, a panel a quantity. rows: {case: {quantity: (mean, error)}}; wanted: {quantity:
-    value}; the first case is what the changes are made to."""
-    figure, panels = canvas(13, 1 + 0.27 * len(cases), 1, len(wanted), sharey=True)
+def factors(rows, wanted):
+    """One change at a time: a row a case, a panel a quantity.
+
+    rows: {case: {quantity: (mean, error)}}, the first being what the changes are made to; wanted: {quantity: value}.
+    """
+    figure, panels = canvas(13, 1 + 0.27 * len(rows), 1, len(wanted), sharey=True)
     for axes, (quantity, target) in zip(panels, wanted.items()):
-        means, errors = np.array([rows[case][quantity] for case in cases]).T
-        places = np.arange(len(cases))[::-1]
+        means, errors = np.array([found[quantity] for found in rows.values()]).T
+        places = np.arange(len(rows))[::-1]
         axes.axvline(target, color="#2f7d32", linewidth=2, alpha=0.6)
         axes.axvline(means[0], color="0.5", linestyle=":", linewidth=1)
         axes.errorbar(means, places, xerr=errors, fmt="o", color="#8f3b1b", capsize=2, markersize=5)
-        axes.set(title=quantity, xlim=(0, 1.1 * max(np.nanmax(means + errors), target)))
-        axes.set_yticks(places, cases)
+        axes.set(title=quantity, ylim=(-0.7, len(rows) - 0.3), xlim=(0, 1.1 * max(np.nanmax(means + errors), target)))
+        axes.set_yticks(places, list(rows))
         axes.grid(axis="y", color="0.9")
     figure.suptitle("green: what P says of its rock; dotted: P's numbers as they are", fontsize=10)
     return figure

@@ -22,7 +22,8 @@ def books(name, run):
     """Rows that every laboratory run must meet."""
     book = run.summary["audits"]["energy"]
     return [Row(f"{name}: the specimen failed", 1, run.result("failed"), 0),
-            Row(f"{name}: energy explained, of the platens' work", 1.0, 1 - book["residual"] / book["platen_work"], 0.02)]
+            Row(f"{name}: energy explained, of the platens' work", 1.0, 1 - book["residual"] / book["platen_work"],
+                0.02)]
 
 
 def laws(runs):
@@ -42,13 +43,13 @@ def laws(runs):
            for case in SOFT}
     rows += [Row("damage: UCS at H = 5e9 over 2e11 (M: hardly sensitive)", 1.0, ucs["damage 5e9"] / ucs["damage 2e11"],
                  0.1, source=True),
-             Row("damage: UCS at H = 2e9 over 2e11 differs clearly (M)", 1, abs(ucs["damage 2e9"] / ucs["damage 2e11"] - 1)
-                 > 0.1, 0, source=True),
+             Row("damage: UCS at H = 2e9 over 2e11 differs clearly (M)", 1,
+                 abs(ucs["damage 2e9"] / ucs["damage 2e11"] - 1) > 0.1, 0, source=True),
              Row("plastic: UCS rises with H from 2e9 to 2e10 (M)", 1, ucs["plastic 2e10"] > 1.1 * ucs["plastic 2e9"], 0,
                  source=True)]
-    compressed = {case: main[case, "compression"] for case in MAIN}
-    return rows, {"laws_stress_strain": figures.stress_strain(
-        {test: {case: [main[case, test]] for case in MAIN} for test in TESTS}), "laws_failure": figures.failures(compressed)}
+    curves = {test: {case: [main[case, test]] for case in MAIN} for test in TESTS}
+    return rows, {"laws_stress_strain": figures.stress_strain(curves),
+                  "laws_failure": figures.failures({case: main[case, "compression"] for case in MAIN})}
 
 
 def sandstone(runs):
@@ -78,8 +79,8 @@ def slow_enough(runs):
 
 
 SECTIONS = [
-    Section("Laboratory: the laws of M 5.1", "M's specimen under the three laws, and 525 discs of three packings for H.",
-            laws, {**{folder_of(case, test, 1): uniaxial(test=test, **values) for case, values in MAIN.items()
+    Section("Laboratory: the laws of M 5.1", "M's specimen under the three laws; H on 525 discs of three packings.", laws,
+            {**{folder_of(case, test, 1): uniaxial(test=test, **values) for case, values in MAIN.items()
                       for test in TESTS},
                    **{f"small-{folder_of(case, 'compression', seed)}": uniaxial(seed=seed, **SMALL, **values)
                       for seed in SEEDS for case, values in SOFT.items()}}),
