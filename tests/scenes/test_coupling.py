@@ -25,7 +25,7 @@ def test_free_heating_leaves_no_stress(found):
     assert free["force_of_strength"] < 1e-9
     assert free["force_relaxed"] < 1e-4
     assert free["strain"] == pytest.approx([free["expected"]] * 2, rel=5e-4)
-    assert free["mass"] == free["cold_mass"]
+    assert free["mass"] == pytest.approx(free["cold_mass"], rel=1e-14)
 
 
 def test_heating_between_two_ends_gives_E_alpha_dtheta(found):
@@ -36,7 +36,7 @@ def test_heating_between_two_ends_gives_E_alpha_dtheta(found):
 
 def test_heating_held_all_around_gives_E_alpha_dtheta_by_one_less_nu(found):
     held = found["constrained"]
-    assert np.array(held["plane"]) == pytest.approx(held["plane_expected"] * np.eye(2), abs=1e-9 * held["plane_expected"])
+    assert np.array(held["plane"]) / held["plane_expected"] == pytest.approx(np.eye(2), abs=1e-9)
 
 
 def test_work_of_expansion_is_what_the_bonds_store(found):
@@ -84,7 +84,8 @@ def test_a_cut_with_expansion_keeps_its_books_and_resumes_to_the_last_bit(tmp_pa
     assert interrupt(out, signal.SIGTERM, 2, **HOT).code == 128 + signal.SIGTERM
     resumed = test_tooth(out, "--resume", **HOT)
     assert resumed.code == 0, resumed.stderr
-    assert resumed.summary["results"] == whole.summary["results"] and resumed.summary["audits"] == whole.summary["audits"]
+    assert resumed.summary["results"] == whole.summary["results"]
+    assert resumed.summary["audits"] == whole.summary["audits"]
 
 
 def test_without_expansion_there_is_no_engine_for_it(tmp_path):

@@ -41,9 +41,9 @@ def arranged(positions, radii=D / 2, pairs=None, held=()):
     supported = np.zeros(count, bool)
     supported[list(held)] = True
     masses = 2500 * np.pi * radii**2
+    pairs = contacts(positions, radii, 1e-9) if pairs is None else np.reshape(pairs, (-1, 2)).astype(int)
     return SimpleNamespace(positions=positions, radii=radii, count=count, supported=supported, masses=masses,
-                           inertias=0.5 * masses * radii**2, strength_factor=None,
-                           pairs=contacts(positions, radii, 1e-9) if pairs is None else np.asarray(pairs, int).reshape(-1, 2))
+                           inertias=0.5 * masses * radii**2, pairs=pairs)
 
 
 class Assembly:
@@ -101,14 +101,19 @@ class Assembly:
             raise engines.failures.pop()
 
 
+def packed(**size):
+    """A random packing with gaps and overlaps."""
+    return Specimen(height=0.03, radius_min=1e-3, radius_max=1.5e-3, porosity=0.12, bonding_gap=1e-4, density=2500,
+                    **size)
+
+
 def lattice(rows, columns):
     return [(D * (k + 0.5 * (row % 2)), 0.5 * math.sqrt(3) * D * row) for row in range(rows) for k in range(columns)]
 
 
 def free():
     """A packing with gaps and overlaps, heated evenly: bonds feel nothing once it has its new size."""
-    rock = Specimen(width=0.04, height=0.03, radius_min=1e-3, radius_max=1.5e-3, porosity=0.12, seed=1, bonding_gap=1e-4,
-                    density=2500)
+    rock = packed(width=0.04, seed=1)
     a = Assembly(rock)
     a.heat(10.0)
     a.place(rock.positions * (1 + 10 * ALPHA))
@@ -118,11 +123,12 @@ def free():
     a = Assembly(rock, damping=0.4)
     a.heat(10.0)
     a.relax(6000)
-    lengths = [np.linalg.norm(x[rock.pairs[:, 1]] - x[rock.pairs[:, 0]], axis=1) for x in (rock.positions, a.positions())]
+    i, j = rock.pairs.T
+    lengths = [np.linalg.norm(x[j] - x[i], axis=1) for x in (rock.positions, a.positions())]
     strain = lengths[1] / lengths[0] - 1
     return {"force_of_strength": grown / 1e5, "force_relaxed": abs(a.forces()[0]).max() / (KN * ALPHA * 10 * D),
-            "strain": [float(strain.min()), float(strain.max())], "expected": 10 * ALPHA, "mass": sum(O.bodies[i].state.mass for i in range(rock.count)),
-            "cold_mass": float(rock.masses.sum())}
+            "strain": [float(strain.min()), float(strain.max())], "expected": 10 * ALPHA,
+            "mass": sum(O.bodies[i].state.mass for i in range(rock.count)), "cold_mass": float(rock.masses.sum())}
 
 
 def grip(a, kelvin, shortened=0.0):
@@ -146,9 +152,9 @@ def constrained():
     # The section over which the lattice's force is a stress: see scripts/laboratory.py.
     section = (rows - 1) * 0.5 * math.sqrt(3) * D + KN * D / E
     uniaxial = grip(Assembly(rock, damping=0.4), kelvin) / section
-    packed = Specimen(width=0.05, height=0.03, radius_min=1e-3, radius_max=1.5e-3, porosity=0.12, seed=2, bonding_gap=1e-4,
-                      density=2500)
-    heated, pressed = grip(Assembly(packed, damping=0.4), kelvin), grip(Assembly(packed, damping=0.4), 0.0, kelvin * ALPHA)
+    rock = packed(width=0.05, seed=2)
+    heated = grip(Assembly(rock, damping=0.4), kelvin)
+    pressed = grip(Assembly(rock, damping=0.4), 0.0, shortened=kelvin * ALPHA)
     a = Assembly(arranged(lattice(7, 9), held=range(63)))
     for part in (0.25, 0.5, 1.0, 0.7, 2.0, 1.0):
         a.heat(part * kelvin)
@@ -156,9 +162,9 @@ def constrained():
     force, branch = a.forces()
     middle = [k for k, pair in enumerate(a.rock.pairs) if 31 in pair]
     stress = -0.5 * np.einsum("ki,kj->ij", force[middle], branch[middle]) / (0.5 * math.sqrt(3) * D**2)
-    return {"uniaxial": uniaxial, "E_alpha_dT": E * ALPHA * kelvin, "packing_heated": heated, "packing_pressed": pressed,
-            "plane": (-stress).tolist(), "plane_expected": math.sqrt(3) * KN * ALPHA * kelvin,
-            "work": a.expansion.work, "stored": a.bonds.elastic_energy()}
+    return {"uniaxial": uniaxial, "E_alpha_dT": E * ALPHA * kelvin, "packing_heated": heated,
+            "packing_pressed": pressed, "plane": (-stress).tolist(),
+            "plane_expected": math.sqrt(3) * KN * ALPHA * kelvin, "work": a.expansion.work, "stored": a.bonds.elastic_energy()}
 
 
 def followed():
@@ -243,7 +249,7 @@ def two_spinning(period, duration=0.02):
     bonds = Bonds(pairs=rock.pairs, law=UNBREAKABLE, clock=lambda: O.time)
     motion = Foresight(masses=rock.masses, inertias=rock.inertias, radii=rock.radii, held=rock.supported)
     friction = RockFriction(bonds=bonds, motion=motion)
-    network = HeatNetwork(capacity=np.full(2, capacity), temperature=300.0, edges=np.empty((0, 2), int), conductance=0.0)
+    network = HeatNetwork(capacity=np.full(2, capacity), temperature=300.0, edges=NO_PATHS[0], conductance=0.0)
     nothing = SimpleNamespace(count=0, radii=np.empty(0), mounted=np.zeros(0, bool))
     untouched = SimpleNamespace(take_heating=lambda: (np.empty(0), np.zeros(2), {}))
     heat = Heat(network=network, bonds=bonds, rock_friction=friction, tool_contact=untouched, rock=rock, tool=nothing,
@@ -278,7 +284,7 @@ def staggered():
 
 
 def sliding_block():
-    """A block of steel discs on a turning stone, under a constant force, there and back: heat of both by irreversible slip."""
+    """A block of steel discs on a turning stone, under a constant force, there and back and there again."""
     stone, radius, pressed, discs = 0.05, 0.5e-3, 4e-6, 5
     spin, steps = 2.0, 4000
     angle = math.pi / 2 + 2.2 * radius / (stone + radius) * (np.arange(discs) - (discs - 1) / 2)
@@ -302,7 +308,7 @@ def sliding_block():
     friction = RockFriction(bonds=bonds, motion=motion)
     contact = ToolContact(tool=tool, motion=motion)
     c_rock, c_tool = 5.0, 2.0
-    network = HeatNetwork(capacity=np.array([c_rock] + discs * [c_tool]), temperature=300.0, edges=np.empty((0, 2), int),
+    network = HeatNetwork(capacity=np.array([c_rock] + discs * [c_tool]), temperature=300.0, edges=NO_PATHS[0],
                           conductance=0.0)
     e_rock, e_tool = (effusivity(m.conductivity, m.density, m.specific_heat) for m in (SANDSTONE, STEEL))
     share, chi = effusivity_share(e_tool, e_rock), 0.85
