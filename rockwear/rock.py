@@ -83,7 +83,7 @@ class Specimen:
         not_negative("bonding_gap", bonding_gap, "m")
         within("coarsening", coarsening, 1, 8)
         positive("fine_depth", fine_depth, "m")
-        self.width, self.height, self.density = width, height, density
+        self.width, self.height = width, height
         key = dict(box=[width, height], radius_min=radius_min, radius_max=radius_max, porosity=porosity, seed=seed)
         if coarsening > 1:
             key.update(coarsening=coarsening, fine_depth=fine_depth)
@@ -97,12 +97,15 @@ class Specimen:
 
         stored = cached(make, **key)
         self.positions, self.radii, self.scale = stored["positions"], stored["radii"], stored["scale"]
-        self.count = len(self.radii)
-        self.porosity = 1 - float(np.sum(np.pi * self.radii**2)) / (width * height)
+        self._weigh(density)
         self.pairs = packing.contacts(self.positions, self.radii, bonding_gap)
         require(len(self.pairs) > self.count, "bonding_gap", bonding_gap, "large enough to bond the packing", "m")
         self.strength_factor = self.scale[self.pairs].mean(axis=1)
-        # Particles carry the mass of the pores: bulk density over solid fraction (P 63).
+
+    def _weigh(self, density):
+        """Masses and inertias: particles carry the mass of the pores, bulk density over solid fraction (P 63)."""
+        self.density, self.count = density, len(self.radii)
+        self.porosity = 1 - float(np.sum(np.pi * self.radii**2)) / (self.width * self.height)
         self.masses = density / (1 - self.porosity) * np.pi * self.radii**2
         self.inertias = 0.5 * self.masses * self.radii**2
         self.supported = np.zeros(self.count, bool)
@@ -135,3 +138,14 @@ class Specimen:
         from yade import Subdomain
         values = np.fromiter(Subdomain().getStateValuesFromIds(list(range(self.count))), float)
         return values.reshape(self.count, 13)[:, :2]
+
+
+class Arranged(Specimen):
+    """Equal discs of one radius (m) at given places (n, 2) m of a box, the touching ones bonded: lattices and the like."""
+
+    def __init__(self, *, positions, radius, width, height, density):
+        self.positions, self.width, self.height = np.asarray(positions, float), width, height
+        self.radii, self.scale = np.full(len(positions), float(radius)), np.ones(len(positions))
+        self._weigh(density)
+        self.pairs = packing.contacts(self.positions, self.radii, 1e-6 * radius)
+        self.strength_factor = np.ones(len(self.pairs))

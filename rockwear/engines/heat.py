@@ -3,9 +3,31 @@ import math
 
 import numpy as np
 
-from ..kernels.cells import conducting
+from ..kernels.cells import among, conducting
 from ..kernels.surface import free_surface
 from . import Engine
+
+
+class Conduction(Engine):
+    """Heat in a network and nothing else: every visit lets the time since the last one pass.
+
+    network: kernels.conduction.HeatNetwork; step: s, the longest heat step, at most the stable one.
+    """
+
+    name = "heat"
+
+    def __init__(self, *, network, step):
+        super().__init__()
+        self.network, self.step = network, step
+
+    def act(self):
+        self.network.advance(self.elapsed(), step=self.step)
+
+    def state(self):
+        return {"network": self.network.state()}
+
+    def restore(self, state):
+        self.network.restore(state["network"])
 
 
 class Heat(Engine):
@@ -35,7 +57,7 @@ class Heat(Engine):
         self.heat_fraction, self.tool_share, self.conduction = heat_fraction, tool_share, conduction
         self.contact_conductance, self.convection, self.ambient = contact_conductance, convection, ambient
         self.rock_paths, self.tool_paths = rock_paths, tool_paths
-        self.facing = ~self._among(rock_paths[0], bonds.pairs)
+        self.facing = ~among(rock_paths[0], bonds.pairs, self.n)
         self.surface_period, self.root_temperature, self.speed_up = surface_period, root_temperature, speed_up
         self.carried_away = self.replaced = self.renewed = 0.0
         self.surface_time = -math.inf
@@ -94,17 +116,13 @@ class Heat(Engine):
             in_contact[[self.n + index, rock]] = True
         self._expose(in_contact)
 
-    def _among(self, pairs, others):
-        """(m,) bool: which pairs of rock particles, the lower number first, are among the others."""
-        return np.isin(pairs @ [self.n, 1], others @ [self.n, 1])
-
     def _rock_now(self):
         """Rock particles in contact conduct, and those across closed pores; contacts made since as a mean of all."""
         pairs, conductance = self.rock_paths
         loose = np.sort(np.array([(i.id1, i.id2) for i in self.rock_friction.contacts], int).reshape(-1, 2), axis=1)
         touching = np.concatenate([self.bonds.pairs[self.bonds.in_contact()], loose])
-        conducts = conducting(pairs, self._among(pairs, touching), self.facing, self.n)
-        met = loose[~self._among(loose, pairs)]
+        conducts = conducting(pairs, among(pairs, touching, self.n), self.facing, self.n)
+        met = loose[~among(loose, pairs, self.n)]
         return (np.concatenate([pairs[conducts], met]),
                 np.concatenate([conductance[conducts], np.full(len(met), conductance.mean())]))
 

@@ -142,6 +142,11 @@ def _behind_polygon(positions, polygon):
         yield np.where(outline.inside(mirrored, polygon)[:, None], positions, mirrored)
 
 
+def among(pairs, others, n):
+    """(m,) bool: which pairs (m, 2) of n particles, the lower number first, are among the others (k, 2)."""
+    return np.isin(np.asarray(pairs) @ [n, 1], np.asarray(others) @ [n, 1])
+
+
 def conducting(edges, joined, facing, n):
     """Which neighbours exchange heat while some of the contacts are open: (m,) bool.
 

@@ -80,6 +80,16 @@ class HeatNetwork:
         return self._capacity > 0
 
     @property
+    def edges(self):
+        """(m, 2) int, the contacts there are, a copy."""
+        return self._edges.copy()
+
+    @property
+    def conductance(self):
+        """(m,) W/K of the contacts, a copy."""
+        return self._conductance.copy()
+
+    @property
     def heat_content(self):
         """Heat of all present nodes, sum C_i T_i, J, counted from 0 K."""
         return float(self._capacity @ self._temperature)

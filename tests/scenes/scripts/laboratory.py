@@ -13,25 +13,16 @@ import numpy as np  # noqa: E402
 
 from calibration.laboratory import PARAMETERS, UniaxialTest  # noqa: E402
 from rockwear import run  # noqa: E402
-from rockwear.kernels.packing import contacts  # noqa: E402
 from rockwear.parameters import Parameter, choice  # noqa: E402
-from rockwear.rock import Specimen  # noqa: E402
+from rockwear.rock import Arranged  # noqa: E402
 
 ROWS, COLUMNS, RADIUS = 7, 36, 1e-3
 
 
-class Arranged(Specimen):
-    """Equal discs at given places, touching ones bonded. section: m, over which a force becomes a stress."""
-
-    def __init__(self, *, positions, section, density):
-        self.positions, self.count = positions, len(positions)
-        self.radii, self.scale = np.full(self.count, RADIUS), np.ones(self.count)
-        self.width, self.height, self.porosity = np.ptp(positions[:, 0]) + 2 * RADIUS, section, 0.0
-        self.pairs = contacts(positions, self.radii, 1e-6 * RADIUS)
-        self.strength_factor = np.ones(len(self.pairs))
-        self.masses = density * np.pi * self.radii**2
-        self.inertias = 0.5 * self.masses * self.radii**2
-        self.supported = np.zeros(self.count, bool)
+def arranged(positions, section, density):
+    """Discs whose force becomes a stress over `section`, m."""
+    return Arranged(positions=positions, radius=RADIUS, width=np.ptp(positions[:, 0]) + 2 * RADIUS, height=section,
+                    density=density)
 
 
 def lattice(v):
@@ -43,13 +34,13 @@ def lattice(v):
               for row in range(ROWS) for k in range(COLUMNS)]
     modulus = 2 * math.sqrt(3) * v.kn * (v.kn + v.kt) / (3 * v.kn + v.kt)
     section = (ROWS - 1) * rise + v.kn * spacing / modulus
-    return Arranged(positions=np.array(places), section=section, density=v.rock_density)
+    return arranged(np.array(places), section, v.rock_density)
 
 
 def chain(v):
     """Two discs in a row, both led."""
     places = np.array([[RADIUS, RADIUS], [3 * RADIUS, RADIUS]])
-    return Arranged(positions=places, section=2 * RADIUS, density=v.rock_density)
+    return arranged(places, 2 * RADIUS, v.rock_density)
 
 
 class Exact(UniaxialTest):

@@ -1,0 +1,173 @@
+"""Figures of the heat benchmarks: profiles over the exact solutions, errors and their convergence, the discs in colour."""
+from collections import namedtuple
+
+import numpy as np
+
+from .page import Section, machine_tiles, number, percent, table, tiles, words
+from .plots import books, canvas, discs, save
+
+MARKS = {"random": ("o", "#b0522a"), "square": ("s", "#3b7fb0"), "triangular": ("^", "#4a8a3c")}
+DOTS = 150
+"""Largest number of discs drawn in a profile."""
+
+Case = namedtuple("Case", "benchmark packing across positions radii stages")
+"""One benchmark on one packing: its discs and its stages, as {stage: instant in s}."""
+
+
+def shows(run):
+    """True for a run of the heat benchmarks with at least one instant."""
+    return "heat_cases" in run.model and len(run.times) > 0
+
+
+def sections(run):
+    """The sections of the page, in order."""
+    cases = read_cases(run)
+    finest = max(case.across for case in cases)
+    shown = [case for case in cases if case.across == finest]
+    errors = run_errors(run)
+
+    def drawn(name, figure):
+        return save(run, name, figure)
+
+    return [
+        Section("Key results", f"{finest} diameters across the depth; errors are parts of the range of temperature at "
+                "their instant, over all discs.", [key_results(run, shown, errors), error_table(run, shown, errors)]),
+        Section("Profiles", "Lines: exact solutions at the instants of the source. Dots: discs at their depth, wherever "
+                "across the specimen they are.", [drawn("profiles", profiles(run, shown))]),
+        Section("Convergence", "Errors at the last instant over the mean diameter; the dashed line has order 2.",
+                [drawn("convergence", convergence(cases, errors))]),
+        Section("Temperatures", "The discs at the last instant, coloured from the lowest to the highest temperature.",
+                [drawn("temperatures", temperatures(run, shown))]),
+        books(run)]
+
+
+def read_cases(run):
+    """[Case] of the run."""
+    model = run.model
+    found = []
+    for k, name in enumerate(model["heat_cases"].tolist()):
+        benchmark, packing, across = name.split("/")
+        stages = np.flatnonzero(model["stage_case"] == k)
+        found.append(Case(benchmark, packing, int(across), model[f"positions_{k}"], model[f"radii_{k}"],
+                          dict(zip(stages.tolist(), model["stage_instant"][stages].tolist()))))
+    return found
+
+
+def run_errors(run):
+    """{stage: (largest, rms)} of the stages that are done."""
+    found = {}
+    for stage in set(run.stages.tolist()):
+        shot = at_end(run, stage)
+        if shot is not None:
+            gap = np.abs(shot["temperature"] - shot["exact"]) / shot["exact"].max()
+            found[stage] = gap.max(), np.sqrt(np.mean(gap**2))
+    return found
+
+
+def at_end(run, stage):
+    """The snapshot at a stage's end: at its last time; None where the run did not get there."""
+    ends = np.cumsum(stage_seconds(run.model))
+    at = np.flatnonzero((run.stages == stage) & (run.times >= ends[stage] * (1 - 1e-9)))
+    return run.snapshot(at[-1]) if len(at) else None
+
+
+def stage_seconds(model):
+    """(stages,) s that each stage takes."""
+    instant, case = model["stage_instant"], model["stage_case"]
+    before = np.concatenate([[0.0], instant[:-1]])
+    before[np.concatenate([[True], case[1:] != case[:-1]])] = 0.0
+    return instant - before
+
+
+def key_results(run, shown, errors):
+    """The numbers to see first."""
+    def worst(packing):
+        found = [errors[stage] for case in shown if case.packing == packing for stage in case.stages if stage in errors]
+        return [max(column) for column in zip(*found)] or [np.nan, np.nan]
+
+    entries = []
+    for packing in dict.fromkeys(case.packing for case in shown):
+        largest, rms = worst(packing)
+        entries.append((f"largest error, {packing}", percent(largest, 1.0), f"root mean square {percent(rms, 1.0)}"))
+    return tiles([*entries, *machine_tiles(run)])
+
+
+def error_table(run, shown, errors):
+    """Largest and rms error and order of each benchmark and packing."""
+    rows = []
+    for case in shown:
+        found = [errors[stage] for stage in case.stages if stage in errors]
+        if found:
+            largest, rms = (max(column) for column in zip(*found))
+            order = run.result(f"{case.benchmark}_{case.packing}_order_in_space")
+            rows.append((f"{words(case.benchmark)}, {case.packing}", len(case.radii), percent(largest, 1.0),
+                         percent(rms, 1.0), number(order)))
+    return table(rows, ("benchmark", "discs", "largest error", "rms error", "order in space"))
+
+
+def profiles(run, shown):
+    """Temperature over depth, a row a benchmark, a column a packing."""
+    benchmarks, packings = (list(dict.fromkeys(getattr(case, name) for case in shown)) for name in ("benchmark", "packing"))
+    figure, axes = canvas(1.5 + 3.6 * len(packings), 3 * len(benchmarks), len(benchmarks), len(packings))
+    for case in shown:
+        panel = axes[benchmarks.index(case.benchmark) * len(packings) + packings.index(case.packing)]
+        order = np.argsort(case.positions[:, 0])
+        x = case.positions[:, 0]
+        some = np.random.default_rng(0).permutation(len(x))[:DOTS]
+        for k, (stage, instant) in enumerate(case.stages.items()):
+            shot = at_end(run, stage)
+            if shot is None:
+                continue
+            shade = 0.75 - 0.75 * k / max(1, len(case.stages) - 1)
+            panel.plot(x[order], shot["exact"][order], color=str(shade), linewidth=1, label=f"t = {instant:g} s")
+            panel.plot(x[some], shot["temperature"][some], MARKS[case.packing][0], color=MARKS[case.packing][1],
+                       markersize=2.5, zorder=3)
+        panel.set(title=f"{words(case.benchmark)}, {case.packing}", xlabel="depth", ylabel="temperature")
+        panel.legend(fontsize=8, loc="lower center" if case.benchmark == "slab_source" else "best")
+    return figure
+
+
+def convergence(cases, errors):
+    """Errors at the last instant over the diameter, a panel a benchmark."""
+    benchmarks = list(dict.fromkeys(case.benchmark for case in cases))
+    figure, axes = canvas(1.5 + 3.4 * len(benchmarks), 3.4, 1, len(benchmarks), sharey=True)
+    for benchmark, panel in zip(benchmarks, axes):
+        largest = []
+        for packing in dict.fromkeys(case.packing for case in cases):
+            same = [case for case in cases if (case.benchmark, case.packing) == (benchmark, packing)
+                    and max(case.stages) in errors]
+            if same:
+                size = np.array([1 / case.across for case in same])
+                found = np.array([errors[max(case.stages)] for case in same])
+                mark, colour = MARKS[packing]
+                panel.loglog(size, 100 * found[:, 1], mark + "-", color=colour, label=f"{packing}, rms")
+                panel.loglog(size, 100 * found[:, 0], mark + ":", color=colour, markerfacecolor="white", linewidth=1)
+                largest.append((size.max(), 100 * found[0, 1]))
+        if largest:
+            top, level = max(largest)
+            size = np.array([top, min(1 / case.across for case in cases)])
+            panel.loglog(size, 0.3 * level * (size / top) ** 2, "--", color="0.5", linewidth=1)
+        sizes = sorted({1 / case.across for case in cases})
+        panel.set(title=words(benchmark), xlabel="mean diameter / depth")
+        panel.set_xticks(sizes, [f"1/{round(1 / size)}" for size in sizes], minor=False)
+        panel.minorticks_off()
+    axes[0].set_ylabel("error / % of the range")
+    axes[0].legend(fontsize=8, title="open marks: largest", title_fontsize=8)
+    return figure
+
+
+def temperatures(run, shown):
+    """The discs of one packing at the last instant of each benchmark."""
+    shown = [case for case in shown if case.packing == shown[0].packing and at_end(run, max(case.stages)) is not None]
+    if not shown:
+        return None
+    size = np.ptp(shown[0].positions, axis=0)
+    figure, axes = canvas(10, 0.8 + len(shown) * max(1.2, 9 * size[1] / size[0]), len(shown), 1)
+    for case, panel in zip(shown, axes):
+        colours = discs(panel, case.positions / 1e3, case.radii / 1e3, array=at_end(run, max(case.stages))["temperature"],
+                        cmap="inferno")  # the collection counts in mm, these benchmarks in units of their own
+        top = (case.positions + case.radii[:, None]).max(axis=0)
+        panel.set(xlim=(0, top[0]), ylim=(0, top[1]), aspect="equal", xlabel="depth",
+                  title=f"{words(case.benchmark)}, {case.packing}, t = {case.stages[max(case.stages)]:g} s")
+        figure.colorbar(colours, ax=panel, fraction=0.02, pad=0.01)
+    return figure
