@@ -5,6 +5,7 @@ from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
+from scipy.spatial import cKDTree
 from yade import O, utils
 
 from . import scene, vtk
@@ -13,15 +14,17 @@ from .engines.expansion import Expansion
 from .engines.heat import Heat
 from .engines.motion import BackgroundDamping, Foresight, Guide
 from .engines.record import Recorder, RunEnded, Watch
-from .engines.wear import ToolContact, Wear
+from .engines.wear import ToolContact, Wear, WearProfile
 from .kernels.archard import BRINELL, KELVIN, MET71, MET91, Hardness
 from .kernels.bond_laws import LINEAR_LAWS, linear_law
 from .kernels.checks import require
 from .kernels.conduction import PATHS, HeatNetwork, calibrated_conductance, effusivity, effusivity_share, paths
-from .kernels.outline import read_outline, tooth
+from .kernels.erosion import REMOVAL
+from .kernels.outline import contour, read_outline, tooth
 from .kernels.rigid_motion import Straight
 from .kernels.stability import critical_time_step
 from .kernels.wear_laws import LAWS, wear_law
+from .kernels.wear_statistics import PLACE, distribution_error, events_per_particle, trusted_acceleration
 from .materials import Material
 from .parameters import Parameter, above_zero, choice, flag, integer, number, text
 from .rock import Specimen
@@ -30,6 +33,8 @@ from .tool import Tool
 HARDNESS = {"MET71": MET71, "MET91": MET91}
 GUIDE_PERIOD = 100
 """Steps between the corners of a curved path."""
+PROFILE_PERIOD = 10
+"""Visits of the wear between rows of its profile."""
 
 PARAMETERS = [
     # rock
@@ -83,13 +88,17 @@ PARAMETERS = [
     Parameter("steel", "MET91", "", choice("MET71", "MET91"), "hardness table", "M 9.2, table 6.1"),
     Parameter("hardness_temperature", -1.0, "K", number(-1), "constant hardness at this temperature; -1: the tool's own",
               "M 9.2 took 293"),
+    Parameter("hardness", 0.0, "Pa", number(0), "constant hardness itself; 0: the steel's", "M 8 took 1"),
     Parameter("wear_coefficient", 0.01128, "", number(0), "Archard's k", "mean of M 6.14-6.15"),
     Parameter("wear_law", "dissipation", "", choice(*LAWS), "friction work, pressure, power of either, or several modes",
               "M 6.3, 6.1, 6.5, 6.4"),
     Parameter("wear_exponent", 1.0, "", above_zero, "n of the power law, k (p / H)^n", "M 6.5; the value is ours"),
     Parameter("wear_modes", "", "", text, "k/exponent/share of the friction for each mode, with commas", "M 6.4-6.5"),
     Parameter("acceleration", 7000.0, "", number(0), "factor on k", "M 9.2"),
-    Parameter("removal", "volume", "", choice("volume", "depth"), "criterion: Archard's volume conserved, or the depth of M 6.5"),
+    Parameter("removal", "volume", "", choice(*REMOVAL), "criterion: Archard's volume conserved, the depth of M 6.5, "
+              "or none: the shape stays"),
+    Parameter("wear_tolerance", 0.1, "", above_zero, "error of the wear distribution up to which an acceleration is trusted",
+              "R; the value is ours"),
     # heat
     Parameter("heat", True, "", flag, "heat, or a hardness at the tool's first temperature"),
     Parameter("heat_fraction", 0.85, "", number(0, 1), "chi, the part of friction work that becomes heat", "P 5.2"),
@@ -193,6 +202,8 @@ class Cutting(scene.Scene):
         for name in ("tool_temperature", "rock_temperature", "ambient_temperature", "root_temperature"):
             value = getattr(v, name)
             require(low <= value <= high, name, value, f"inside the hardness table of {v.steel}, {low:g} to {high:g}", "K")
+        if v.hardness > 0:
+            return Hardness.constant(v.hardness)
         if v.hardness_temperature >= 0:
             require(low <= v.hardness_temperature <= high, "hardness_temperature", v.hardness_temperature,
                     f"inside the hardness table of {v.steel}, {low:g} to {high:g}, or -1 for the tool's own", "K")
@@ -255,6 +266,7 @@ class Cutting(scene.Scene):
         self.contact = ToolContact(tool=self.bodies, motion=motion, needs=self.wear_law.needs)
         self.wear = Wear(contact=self.contact, erosion=tool.erosion, tool=self.bodies, law=self.wear_law,
                          hardness=self.hardness, temperature=self._tool_temperature, on_removal=self._on_removal)
+        self.profile = WearProfile(erosion=tool.erosion, place=self._places()) if v.acceleration else None
         self.heat = self._heat() if v.heat else None
         self.expansion = self._expansion() if v.heat and v.rock_expansion else None
         self.damping = BackgroundDamping(rate=v.background_damping, bodies=range(rock.count)) if v.background_damping else None
@@ -262,7 +274,13 @@ class Cutting(scene.Scene):
         kick = 0.5 * float(rock.masses.max()) * (v.velocity * v.speed_up)**2
         self.watch = Watch(work=lambda: self.contact.work_done, floor=50 * kick)
         self._enlist(self.bonds, self.contact, self.rock_friction, LettingGo(self.bonds), guide, self.wear,
-                     self.heat, self.expansion, self.damping, self.recorder, self.watch)
+                     self.profile, self.heat, self.expansion, self.damping, self.recorder, self.watch)
+
+    def _places(self):
+        """(m,) number of the place along the first outline that each tool particle is nearest to."""
+        points, arc = contour(self.tool.vertices, PLACE / 10)
+        nearest = cKDTree(points).query(self.tool.positions)[1]
+        return np.floor((arc[nearest] - arc[0]) / PLACE).astype(int)
 
     def _heat(self):
         v, rock, tool = self.v, self.rock, self.tool
@@ -302,7 +320,7 @@ class Cutting(scene.Scene):
         v = self.v
         heat = max(1, self._steps(v.heat_period))
         return {"bonds": 1, "tool_contact": v.sampling_period, "rock_friction": v.rock_sampling_period,
-                "wear": v.wear_period, "heat": heat, "expansion": heat,
+                "wear": v.wear_period, "wear_profile": PROFILE_PERIOD * v.wear_period, "heat": heat, "expansion": heat,
                 "letting_go": 200, "guide": GUIDE_PERIOD, "background_damping": v.damping_period, "watch": 200,
                 "recorder": max(1, self._steps(v.record_period))}
 
@@ -490,10 +508,38 @@ class Cutting(scene.Scene):
                  "particles_removed": (int(np.sum(~self.tool.erosion.alive)), "-"),
                  **self.bonds.log(), **{f"rock_{k}": value for k, value in self.rock.report().items()},
                  "tool_particles": (self.tool.count, "-")}
+        if self.profile:
+            found.update(self._trust())
         if self.heat:
             for name in ("tool_temperature_max", "rock_temperature_max"):
                 found[name] = (float(np.nanmax(columns[name])) if name in columns else math.nan, "K")
         return found
+
+    def _trust(self):
+        """R's two rules for accelerated wear, judged from this run's own record."""
+        v, erosion = self.v, self.tool.erosion
+        error = distribution_error(self.profile.increments)
+        events = events_per_particle(events=self.wear.events, worn=erosion.worn, limit=erosion.volumes)
+        trusted = trusted_acceleration(acceleration=v.acceleration, error=error, events=events, tolerance=v.wear_tolerance)
+        return {"wear_distribution_error": (error, "-"), "contact_events_per_particle": (events, "-"),
+                "trusted_acceleration": (trusted, "-")}
+
+    def warnings(self):
+        if not self.profile:
+            return []
+        v, found = self.v, {name: value for name, (value, _) in self._trust().items()}
+        if not found["trusted_acceleration"] < v.acceleration:
+            return []
+        return [f"where the tool wears is known to {100 * found['wear_distribution_error']:.2g} % only, and a particle goes in "
+                f"{found['contact_events_per_particle']:.2g} contact events: to trust the distribution of wear to "
+                f"{100 * v.wear_tolerance:g} %, accelerate it at most {found['trusted_acceleration']:.2g} times instead of "
+                f"{v.acceleration:g}, and run that much longer"]
+
+    def tables(self):
+        if not self.profile:
+            return super().tables()
+        header = [f"place_{n} [m3/m]" for n in range(self.profile.places)]
+        return {**super().tables(), "wear_profile.csv": (header, self.profile.increments)}
 
     def friction_audit(self):
         """J per metre of thickness: friction as YADE's laws dissipated it, and as it was shared out to particles.

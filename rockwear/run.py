@@ -140,6 +140,8 @@ class Run:
                 self._snapshot()
                 self._checkpoint()
             self._write_summary(ended)
+            for line in self.scene.warnings():
+                print(f"warning: {line}", file=sys.stderr)
             if not code and self.values["report"]:
                 report.write(self.folder)
                 print(f"report: {self.folder / 'report.html'}")
@@ -216,7 +218,7 @@ class Run:
         ours = {engine.name: {"seconds": engine.wall_time, "visits": engine.visits} for engine in scene.live}
         python = sum(engine.wall_time for engine in scene.live)
         summary = {
-            "scene": self.name, "ended": ended, "parameters": self.values, "seed": self.values.get("seed"),
+            "scene": self.name, "ended": ended, "warnings": scene.warnings(), "parameters": self.values, "seed": self.values.get("seed"),
             "versions": {"rockwear": __version__, "yade": yade.config.version, "python": platform.python_version(),
                          "numpy": np.__version__},
             "results": {name: {"value": _plain(value), "unit": unit} for name, (value, unit) in scene.results().items()},

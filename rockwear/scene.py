@@ -317,6 +317,10 @@ class Scene:
         """Every bond that broke, as engines.bonds.Crack."""
         return self.bonds.cracks
 
+    def warnings(self):
+        """Lines on what in this run's results is not to be relied on."""
+        return []
+
     def tables(self):
         """{file: (header, rows)} of further tables: the cracks in order of time."""
         units = "s m m m - - - - J - -".split()

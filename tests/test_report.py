@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from rockwear import report
+from rockwear.kernels.outline import contour
 from rockwear.report import page, shapes
 from rockwear.report.folder import RunFolder, read_history
 
@@ -187,7 +188,7 @@ def test_outline_of_too_little_is_empty():
 
 
 def test_contour_counts_from_the_lowest_point_up_the_front():
-    points, arc = shapes.contour(np.array([[0, 1.0], [1, 0], [2, 1], [1, 2]])[::-1], 0.1)
+    points, arc = contour(np.array([[0, 1.0], [1, 0], [2, 1], [1, 2]])[::-1], 0.1)
     assert np.all(np.diff(arc) > 0) and abs(arc).min() == 0
     assert points[arc == 0].tolist() == [[1, 0]]
     assert np.all(points[(arc > 0) & (arc < 1.4), 0] > 1)

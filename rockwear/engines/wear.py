@@ -157,6 +157,7 @@ class Wear(Engine):
 
     contact: the ToolContact that says where and under what force the tool slides; erosion: kernels.erosion.Erosion of
     the tool; law: of kernels.wear_laws, accelerated; temperature: a function giving (m,) K of the tool particles.
+    `events` counts for each particle how often a contact began to rub it, as far as visits can tell them apart.
     """
 
     name = "wear"
@@ -168,10 +169,14 @@ class Wear(Engine):
         self.on_removal = on_removal
         self.contact_energy_removed = 0.0
         self.work_used = 0.0
+        self.events, self.rubbed = np.zeros(tool.count, int), np.zeros(tool.count, bool)
 
     def act(self):
         slid = self.contact.take_slid()
-        if not slid[WORK].any():
+        rubbed = slid[WORK] > 0
+        self.events += rubbed & ~self.rubbed
+        self.rubbed = rubbed
+        if not rubbed.any():
             return
         self.work_used += float(slid[WORK].sum())
         volume = self.law.volume(slid, self.hardness(self.temperature()), 2 * self.erosion.radii)
@@ -189,12 +194,40 @@ class Wear(Engine):
         self.on_removal(gone)
 
     def state(self):
-        return {"contact_energy_removed": self.contact_energy_removed, "work_used": self.work_used, **self.erosion.state()}
+        return {"contact_energy_removed": self.contact_energy_removed, "work_used": self.work_used,
+                "events": self.events.copy(), "rubbed": self.rubbed.copy(), **self.erosion.state()}
 
     def restore(self, state):
         self.contact_energy_removed, self.work_used = float(state["contact_energy_removed"]), float(state["work_used"])
+        self.events, self.rubbed = state["events"].copy(), state["rubbed"].copy()
         self.erosion.restore(state)
 
     def log(self):
         return {"mass_lost": (self.erosion.mass_fraction_lost, "-"),
                 "worn_volume": (self.erosion.archard_volume, "m3")}
+
+
+class WearProfile(Engine):
+    """Where along the tool's first outline wear happened, span of time by span: what R's rules are judged by.
+
+    erosion: kernels.erosion.Erosion; place: (m,) number of the place that each particle belongs to.
+    """
+
+    name = "wear_profile"
+
+    def __init__(self, *, erosion, place):
+        super().__init__()
+        self.erosion, self.place, self.places = erosion, place, int(place.max()) + 1
+        self.increments = []
+        self.booked = np.zeros(self.places)
+
+    def act(self):
+        now = np.bincount(self.place, self.erosion.worn, self.places)
+        self.increments.append(now - self.booked)
+        self.booked = now
+
+    def state(self):
+        return {"increments": np.array(self.increments).reshape(-1, self.places), "booked": self.booked.copy()}
+
+    def restore(self, state):
+        self.increments, self.booked = list(state["increments"].copy()), state["booked"].copy()

@@ -19,7 +19,12 @@ def volume_limit(radii, volumes, thickness=1.0):
     return np.asarray(volumes, float)
 
 
-REMOVAL = {"volume": volume_limit, "depth": depth_limit}
+def no_limit(radii, volumes, thickness=1.0):
+    """No particle ever goes: wear is only booked, and the shape stays (M 8.2, 13.3). -> (n,) m3."""
+    return np.full(len(volumes), np.inf)
+
+
+REMOVAL = {"volume": volume_limit, "depth": depth_limit, "none": no_limit}
 
 
 class Erosion:
@@ -28,7 +33,8 @@ class Erosion:
     radii: (n,) m; volumes: (n,) m3, the part of the body's volume that each particle stands for; pairs: (m, 2) touching
     particles; skin: indices of particles open to wear at first; anchored: indices of those held by the shank;
     rule: "volume" (conserving: the excess over a particle's volume passes to what its removal uncovers, so that
-    removed + stored = Archard's volume at every moment) or "depth" (the sources': no excess is passed on).
+    removed + stored = Archard's volume at every moment), "depth" (the sources': no excess is passed on) or "none".
+    `worn` is the volume that the wear law took from each particle, `stored` what of it has not led to a removal yet.
     Raises ParameterError for an unknown rule, an index out of range, or volumes that are not positive.
     """
 
@@ -49,6 +55,7 @@ class Erosion:
         self.alive = np.ones(count, bool)
         self.skin = set(int(i) for i in skin)
         self.stored = np.zeros(count)
+        self.worn = np.zeros(count)
         self.archard_volume = 0.0
         self.lost_with_pieces = 0.0
         self.beyond = 0.0
@@ -65,6 +72,7 @@ class Erosion:
         uncovers none to the nearest particles that are left: no volume is ever lost.
         """
         self.archard_volume += float(np.sum(volume))
+        self.worn += volume
         self.stored += volume
         removed, uncovered = [], []
         worn_out = sorted(i for i in self.skin if self.stored[i] >= self.limit[i])
@@ -148,12 +156,12 @@ class Erosion:
 
     def state(self):
         """What must survive a restart."""
-        return {"alive": self.alive.copy(), "skin": np.array(sorted(self.skin), int), "stored": self.stored.copy(),
+        return {"alive": self.alive.copy(), "skin": np.array(sorted(self.skin), int), "stored": self.stored.copy(), "worn": self.worn.copy(),
                 "archard_volume": self.archard_volume, "lost_with_pieces": self.lost_with_pieces, "beyond": self.beyond}
 
     def restore(self, state):
         """Take back what `state` gave."""
-        self.alive, self.stored = state["alive"].copy(), state["stored"].copy()
+        self.alive, self.stored, self.worn = (state[name].copy() for name in ("alive", "stored", "worn"))
         self.skin = set(state["skin"].tolist())
         self.archard_volume, self.beyond = float(state["archard_volume"]), float(state["beyond"])
         self.lost_with_pieces = float(state["lost_with_pieces"])

@@ -216,3 +216,18 @@ def read_outline(path):
             raise ParameterError("outline", path, f"two numbers a row, unlike line {line}: {','.join(row)}") from None
         vertices.append((x, y))
     return check_polygon(np.reshape(vertices, (-1, 2)), "outline")
+
+
+def contour(outline, spacing):
+    """Points along a polygon and their arc length (m) from its lowest point: positive up the front, at greater x."""
+    x, y = outline.T
+    if np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)) < 0:
+        outline = outline[::-1]
+    closed = np.roll(outline, -int(np.argmin(outline[:, 1])), axis=0)
+    closed = np.vstack([closed, closed[:1]])
+    way = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(closed, axis=0), axis=1))])
+    arc = np.arange(0, way[-1], spacing)
+    points = np.column_stack([np.interp(arc, way, closed[:, k]) for k in (0, 1)])
+    arc = np.where(arc > way[-1] / 2, arc - way[-1], arc)
+    order = np.argsort(arc)
+    return points[order], arc[order]

@@ -8,8 +8,11 @@ from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import LinearSegmentedColormap, LogNorm, to_rgba
 from matplotlib.patches import Patch
 
+from ..kernels import wear_statistics
+from ..kernels.outline import contour
 from ..kernels.rigid_motion import Pose
 from . import shapes
+from .folder import read_history
 from .page import Section, image, machine_tiles, number, percent, quantity, table, tiles, words
 from .plots import (MM, MS, books, canvas, discs, frame, mark_stages, running_mean, save, spread, stage_name)
 
@@ -46,6 +49,7 @@ def sections(run):
         Section("Temperature", "Rise above the coldest start, on a logarithmic scale.", [drawn(temperature)]),
         Section("Wear of the tooth", "Depth worn off each skin particle that is left, and the particles that are gone.",
                 [drawn(wear)]),
+        Section("How far the acceleration can be trusted", trust_line(run), [drawn(trust)]),
         Section("Shape of the tooth", "Dashed: the new tooth. Worn depth is the distance from the new contour to what "
                 "is left; arc length counts from the lowest point, positive up the front.", [drawn(shape)]),
         books(run)]
@@ -352,7 +356,7 @@ def wear(run):
 def shape(run):
     """Outline at the end of each stage over the new one, and worn depth along the contour."""
     model, ends = run.model, spread(run.stage_ends().items(), 8)
-    points, arc = shapes.contour(model["outline"], SPACING)
+    points, arc = contour(model["outline"], SPACING)
     rough = shapes.distance_to(points, shapes.outlines(model["tool_positions"], model["tool_radii"]), SPACING)
     deepest = np.zeros(len(arc))
     figure, (axes, profile) = canvas(12, 5.6, 1, 2)
@@ -370,6 +374,47 @@ def shape(run):
                 xlabel="arc length from the tip / mm", ylabel="mm", title="worn depth along the new contour")
     frame(axes, wear_limits(run, shot), "outline")
     profile.legend(loc="upper left")
+    return figure
+
+
+def trust_line(run):
+    """What R's rules say of this run."""
+    return (f"Wear is accelerated {quantity(run.parameter('acceleration', 0.0), '-')} times. Sampled in "
+            f"{quantity(run.result('simulated_time'), 's')}, its distribution along the tool is known to "
+            f"{percent(run.result('wear_distribution_error'), 1.0)}, and a particle goes in "
+            f"{number(run.result('contact_events_per_particle'))} contact events. For an error of "
+            f"{percent(run.parameter('wear_tolerance', math.nan), 1.0)} and {wear_statistics.ENOUGH_EVENTS} events, "
+            f"accelerate at most {number(run.result('trusted_acceleration'))} times, and run as much longer.")
+
+
+def trust(run):
+    """Wear along the outline with its own error, and error and events against the factor of acceleration."""
+    columns = read_history(run.path / "wear_profile.csv")[0]
+    increments = np.column_stack(list(columns.values())) if columns else []
+    deviation = wear_statistics.distribution_deviation(increments) if len(increments) else None
+    factor, error = run.parameter("acceleration", 0.0), run.result("wear_distribution_error")
+    if deviation is None or not factor:
+        return None
+    worn = increments.sum(axis=0)
+    points, arc = contour(run.model["outline"], SPACING)
+    place = arc[0] + (np.arange(len(worn)) + 0.5) * wear_statistics.PLACE
+    figure, (along, against) = canvas(12, 4.2, 1, 2)
+    along.bar(MM * place, 100 * worn / worn.sum(), 0.9 * MM * wear_statistics.PLACE, color="#c8a15a",
+              yerr=100 * deviation / worn.sum(), ecolor="#444444")
+    shown = MM * place[worn > 1e-3 * worn.max()]
+    along.set(xlabel="arc length from the tip along the new outline / mm", ylabel="% of the worn volume",
+              xlim=(shown.min() - 4, shown.max() + 4), title="where the tool wears, and how well that is known")
+    factors = factor * np.geomspace(1e-3, 10, 60)
+    against.loglog(factors, 100 * error * np.sqrt(factors / factor), color="#2c6e91", label="error of the distribution / %")
+    against.loglog(factors, run.result("contact_events_per_particle") * factor / factors, color="#b5651d",
+                   label="contact events a particle")
+    against.axhline(100 * run.parameter("wear_tolerance", math.nan), color="#2c6e91", linestyle=":")
+    against.axhline(wear_statistics.ENOUGH_EVENTS, color="#b5651d", linestyle=":")
+    trusted = run.result("trusted_acceleration")
+    against.axvspan(factors[0], trusted, color="#e4efe0", zorder=-5, label="both of R's rules kept")
+    against.axvline(factor, color="black", linewidth=1, label="this run")
+    against.set(xlabel="acceleration of wear, at the same worn volume", xlim=factors[[0, -1]])
+    against.legend(loc="upper center", fontsize=8)
     return figure
 
 

@@ -14,6 +14,7 @@ body {font: 15px/1.45 system-ui, sans-serif; color: #222; background: #fff}
 body {max-width: 1100px; margin: 0 auto; padding: 1.5em}
 h1 {margin: 0} h2 {margin: 2em 0 .2em; border-bottom: 2px solid #c8a15a; padding-bottom: .15em}
 p {margin: .4em 0 .8em} .ended {color: #555; font-size: 1.1em}
+.warning {background: #fbe9e7; border-left: 4px solid #cc1414; padding: .4em .8em}
 img {max-width: 100%; display: block; margin: .5em auto}
 .tiles {display: grid; grid-template-columns: repeat(5, 1fr); gap: 10px; margin: 1em 0}
 @media (max-width: 800px) {.tiles {grid-template-columns: repeat(2, 1fr)}}
@@ -155,12 +156,14 @@ def parameters(run):
 
 def whole_page(run, sections):
     """The whole page of a run."""
-    return document(words(run.summary.get("scene", "")), run.summary.get("ended", "not known"), sections)
+    return document(words(run.summary.get("scene", "")), run.summary.get("ended", "not known"), sections,
+                    run.summary.get("warnings", ()))
 
 
-def document(title, remark, sections):
-    """A whole page of sections."""
+def document(title, remark, sections, warnings=()):
+    """A whole page of sections, below lines on what is not to be relied on."""
     title, body = html.escape(title), "\n".join(section.html() for section in sections)
+    body = "".join(f'<p class="warning">{html.escape(line)}</p>\n' for line in warnings) + body
     head = f'<head><meta charset="utf-8"><title>{title}</title>\n<style>{LOOK}</style></head>'
     return (f'<!DOCTYPE html>\n<html lang="en">{head}\n<body><h1>{title}</h1>\n'
             f'<p class="ended">{html.escape(remark)}</p>\n{body}\n</body></html>\n')

@@ -1,0 +1,22 @@
+"""M 8.2: one cut with a tool of equal particles, its wear accumulated on the tool and its shape changed by it.
+
+    yade -n -x yade_scripts/cutting_particles.py [--removal none] [--name value ...] [--out DIR] [--resume]
+
+With `--removal none` the shape stays, as in M's first analysis. M cuts 40 mm in 1 s at 0.04 m/s, ten million steps; the
+defaults cut as far at 1 m/s, slow against every wave in the rock. (--velocity 0.04 --start_up 1 is M's.) Wear is M's,
+k / mu = 5e-9 and H = 1 Pa: a test of the algorithm, no steel.
+"""
+import os
+import sys
+
+sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(sys.argv[0]))))
+
+from rockwear import run  # noqa: E402
+from rockwear.cutting import Cutting, parameters  # noqa: E402
+
+TOOL = parameters(
+    tool_radius_min=0.5e-3, tool_radius_max=0.5e-3, tool_kn=20e9, tool_kt=20e9, tool_mu=0.839, velocity=1.0,
+    start_up=0.04, cycles=0, removal="depth", wear_coefficient=0.839 * 5e-9, hardness=1.0, acceleration=1.0, heat=False,
+    record_period=1e-4)
+
+run.main("cutting_particles", TOOL, Cutting)

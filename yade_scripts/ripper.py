@@ -1,0 +1,20 @@
+"""M 9.3: wear of a ripper tooth in 20 cycles - where it wears, how its shape changes, how fast its mass goes.
+
+    yade -n -x yade_scripts/ripper.py [--name value ...] [--out DIR] [--resume]
+
+Numbers are M's. M shows the tooth in figures only: rake, clearance, size and depth of cut are ours. Its hardness is
+constant, so nothing is heated here; ripper_temperature.py does that.
+"""
+import os
+import sys
+
+sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(sys.argv[0]))))
+
+from rockwear import run  # noqa: E402
+from rockwear.cutting import Cutting, parameters  # noqa: E402
+
+RIPPER = parameters(
+    kn=90e9, kt=90e9, tool_kn=20e9, tool_kt=20e9, tool_radius_max=0.6e-3, hardness_temperature=293.15, heat=False,
+    rake=25.0, clearance=12.0, tooth_height=0.085, tooth_width=0.06, tip_radius=5e-3, depth_of_cut=0.015, cycles=20)
+
+run.main("ripper", RIPPER, Cutting)
