@@ -35,7 +35,7 @@ NEEDED = "distance", "depth"
 
 
 def read(file, brinell=BRINELL):
-    """[{name: SI value}] of a CSV file's rows; errors as "name error". Raises ParameterError, naming column and line."""
+    """[{name: SI value}] of a CSV file's rows; errors as "name error". Raises ParameterError with column and line."""
     try:
         with open(file, newline="", encoding="utf-8-sig") as lines:
             rows = list(csv.DictReader(lines, skipinitialspace=True))
@@ -105,7 +105,7 @@ def _hardness(row, brinell):
     require(kelvin is not None, "temperature", "nothing", "given in every row without a hardness")
     table = STEELS[steel]
     low, high = table.limits
-    require(low <= kelvin <= high, "temperature", kelvin, f"inside the hardness table of {steel}, {low:g} to {high:g}", "K")
+    require(low <= kelvin <= high, "temperature", kelvin, f"inside the table of {steel}, {low:g} to {high:g}", "K")
     error = row.get("temperature error", 0.0)
     ends = table(np.clip([kelvin - error, kelvin + error], low, high))
     value = table(kelvin) * brinell / BRINELL
@@ -113,7 +113,7 @@ def _hardness(row, brinell):
 
 
 def fit(rows, *, law="pressure", mu=0.3, exponent=1.0, modes="", brinell=BRINELL):
-    """Fit the law to each steel's rows. -> {steel: {"tests", "law", "fit", "rows": [(k, its uncertainty)], "exponent"}}.
+    """Fit the law to each steel's rows. -> {steel: {"tests", "law", "fit", "rows": [(k, error)], "exponent"}}.
 
     exponent: of the power law; None fits it as well. Rows alone are fitted one by one unless the law has several modes.
     """
@@ -140,7 +140,8 @@ def plus_minus(value, uncertainty):
     """A value with its standard error."""
     if not np.isfinite(uncertainty):
         return f"{value:.5g} (no error known: give errors, or several rows)"
-    return f"{value:.5g} +- {uncertainty:.2g} ({100 * uncertainty / value:.1f} %)" if value else f"0 +- {uncertainty:.2g}"
+    part = f" ({100 * uncertainty / value:.1f} %)" if value else ""
+    return f"{value:.5g} +- {uncertainty:.2g}{part}"
 
 
 def lines(found):
@@ -171,7 +172,8 @@ def draw(found, file):
         axes.errorbar(x, rate, yerr=rate * tests.relative_error, fmt="o", color=colour, capsize=3, zorder=3)
         if isinstance(one["law"], SumOfModes):
             words = ", ".join(f"{k:.3g}" for k in one["fit"].k)
-            axes.plot(x, 1e6 * one["fit"].depth / tests.distance, "x", color=colour, label=f"{steel or 'tests'}: k = {words}")
+            axes.plot(x, 1e6 * one["fit"].depth / tests.distance, "x", color=colour,
+                      label=f"{steel or 'tests'}: k = {words}")
             continue
         grid = np.linspace(0, 1.15 * x.max(), 100)
         law = one["law"]
@@ -197,7 +199,8 @@ def main(words=None):
     try:
         brinell, mu = positive("brinell", given.brinell, "Pa"), positive("mu", given.mu)
         exponent = None if given.exponent == "fit" else positive("exponent", given.exponent)
-        found = fit(read(given.file, brinell), law=given.law, mu=mu, exponent=exponent, modes=given.modes, brinell=brinell)
+        found = fit(read(given.file, brinell), law=given.law, mu=mu, exponent=exponent, modes=given.modes,
+                    brinell=brinell)
         if given.out:
             _write(Path(given.out), found, given.law)
     except ParameterError as error:
@@ -212,7 +215,8 @@ def _write(folder, found, law):
         folder.mkdir(parents=True, exist_ok=True)
         text = json.dumps({"law": law, "steels": {steel: {
             "k": one["fit"].k.tolist(), "uncertainty": _plain(one["fit"].uncertainty), "exponent": one["exponent"],
-            "k_of_each_test": [k for k, _ in one["rows"]], "uncertainty_of_each_test": _plain(u for _, u in one["rows"])}
+            "k_of_each_test": [k for k, _ in one["rows"]],
+            "uncertainty_of_each_test": _plain(u for _, u in one["rows"])}
             for steel, one in found.items()}}, indent=1)
         (folder / "wear_fit.json").write_text(text)
         draw(found, folder / "wear_fit.png")

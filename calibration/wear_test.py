@@ -5,8 +5,8 @@ from types import SimpleNamespace
 import numpy as np
 from scipy.integrate import quad
 from yade import (Bo1_Sphere_Aabb, Bo1_Wall_Aabb, ForceResetter, Ig2_Wall_Sphere_ScGeom, InsertionSortCollider,
-                  InteractionLoop, Ip2_FrictMat_FrictViscoMat_FrictViscoPhys, Law2_ScGeom_FrictViscoPhys_CundallStrackVisco,
-                  NewtonIntegrator, O, utils)
+                  InteractionLoop, Ip2_FrictMat_FrictViscoMat_FrictViscoPhys,
+                  Law2_ScGeom_FrictViscoPhys_CundallStrackVisco, NewtonIntegrator, O, utils)
 
 from rockwear import cutting, scene, vtk
 from rockwear.engines.motion import Foresight
@@ -34,7 +34,7 @@ PARAMETERS = [p for p in cutting.parameters(steel="MET71", wear_coefficient=0.00
     Parameter("velocity", 0.117, "m/s", above_zero, "sliding velocity", "M table 6.2"),
     Parameter("temperature", 429.15, "K", number(0), "of the block at first", "M table 6.2: 156 deg C"),
     Parameter("temperature_rise", 0.0, "K", number(0), "of the block over the whole distance, linear in it"),
-    Parameter("block_width", 0.0, "m", number(0), "of the block in the direction of sliding; 0: side of a square of `area`"),
+    Parameter("block_width", 0.0, "m", number(0), "of the block along the sliding; 0: side of a square of `area`"),
     Parameter("block_height", 6e-3, "m", above_zero, "of the block"),
     Parameter("packing", "random", "", choice("random", "lattice"), "of the block's particles"),
     Parameter("slip_step", 5e-6, "m", above_zero, "sliding in a time step", "ours, see WearTest"),
@@ -79,14 +79,14 @@ class WearTest(scene.Scene):
     `acceleration` and the distance down by the same factor (R's first rule).
 
     The block carries the load exactly, see engines.press. What its k is off by is what the contacts dissipate less than
-    mu F s: each that has just closed slips elastically by mu F / kt before it is at Coulomb's limit, and the more of the
+    mu F s: each that has just closed slips elastically by mu F / kt before it is at Coulomb's limit, and the more
     wear comes on a metre, the more contacts do (R's second rule). M's first test, 42 particles removed:
 
         acceleration          500     1000     2000     7000    50000
         k returned, off by  -0.011   -0.023   -0.046    -0.16     -1.2  %
 
-    whatever the slip_step from 0.5 to 5 um. With a power of the pressure or modes, the k returned is that of the block as it
-    is: of a random packing a few particles carry all the load, and a square lattice is needed for the nominal pressure.
+    whatever the slip_step from 0.5 to 5 um. With a power of the pressure or modes, the k returned is that of the block
+    as it is: in a random packing a few particles carry all the load, and only a lattice has the nominal pressure.
     """
 
     looking = {"tool_contact"}
@@ -101,7 +101,8 @@ class WearTest(scene.Scene):
         require(low <= v.temperature <= high, "temperature", v.temperature,
                 f"inside the hardness table of {v.steel}, {low:g} to {high:g}", "K")
         self.hardness = Hardness(table.kelvin - KELVIN, table.pascal / BRINELL)
-        self.law = wear_law(v.wear_law, k=v.wear_coefficient, mu=v.tool_mu, exponent=v.wear_exponent, modes=v.wear_modes)
+        self.law = wear_law(v.wear_law, k=v.wear_coefficient, mu=v.tool_mu, exponent=v.wear_exponent,
+                            modes=v.wear_modes)
         width = v.block_width or math.sqrt(v.area)
         self.pressure, self.load = v.force / v.area, v.force / v.area * width
         outline = np.array([(0, 0), (width, 0), (width, v.block_height), (0, v.block_height)])
@@ -148,7 +149,8 @@ class WearTest(scene.Scene):
         law = self.law.scaled(v.acceleration)
         self.contact = ToolContact(tool=self.bodies, motion=flat, needs=law.needs)
         self.wear = Wear(contact=self.contact, erosion=tool.erosion, tool=self.bodies, law=law, hardness=self.hardness,
-                         temperature=lambda: np.full(tool.count, self.temperature(self.slid)), on_removal=self._on_removal)
+                         temperature=lambda: np.full(tool.count, self.temperature(self.slid)),
+                         on_removal=self._on_removal)
         self.press = Press(bodies=self.bodies, load=self.load, kn=v.tool_kn)
         self.recorder = Recorder([self._log])
         self._enlist(self.contact, self.wear, self.recorder, self.press)
@@ -194,12 +196,12 @@ class WearTest(scene.Scene):
         return self.v.temperature + self.v.temperature_rise * distance / self.v.distance
 
     def expected_depth(self, distance):
-        """Integral of the law's dw/ds under the known pressure over a distance (m): k p / H(theta(s)) for Archard's, m."""
+        """Integral of the law's dw/ds under the known pressure over a distance (m), k p / H(theta(s)) for one, m."""
         rise, rows = self.v.temperature_rise, self.hardness.kelvin
         bends = [] if rise == 0 else [(row - self.v.temperature) / rise * self.v.distance for row in rows]
         inside = [s for s in bends if 0 < s < distance] or None
-        return quad(lambda s: self.law.rate(self.pressure, self.hardness(self.temperature(s))), 0, distance, points=inside,
-                    epsrel=1e-10)[0]
+        return quad(lambda s: self.law.rate(self.pressure, self.hardness(self.temperature(s))), 0, distance,
+                    points=inside, epsrel=1e-10)[0]
 
     @property
     def depth(self):
@@ -216,7 +218,7 @@ class WearTest(scene.Scene):
                 "friction_force": (-force[0], "N/m")}
 
     def results(self):
-        """{name: (value, unit)} of the run; k_returned is what the laboratory would find from force, distance and depth."""
+        """{name: (value, unit)} of the run; k_returned is what the laboratory would find from force, way and depth."""
         v, erosion = self.v, self.tool.erosion
         expected = self.expected_depth(self.slid)
         ratio = self.depth / expected if expected else math.nan

@@ -36,16 +36,18 @@ def test_all_linear_forms_give_one_k_and_the_power_law_its_own():
     assert rows_of(fit(rows, law="power", mu=0.42, exponent=1.0)) == pytest.approx(rows_of(fit(rows)), rel=1e-12)
     square = fit(rows, law="power", exponent=2.0)["MET91"]
     tests = square["tests"]
-    assert square["rows"][0][0] == pytest.approx(tests.depth[0] / tests.distance[0] * (tests.hardness[0] / tests.pressure[0])**2)
+    exact = tests.depth / tests.distance * (tests.hardness / tests.pressure)**2
+    assert square["rows"][0][0] == pytest.approx(exact[0])
 
 
 def test_errors_propagate_column_by_column(tmp_path):
     """3 % of force, 4 % of depth: 5 % of k; the temperature counts by the slope of H."""
     file = tmp_path / "mine.csv"
-    file.write_text("steel,force [kN],area [cm2],distance [km],depth [um],temperature [K],force error [kN],depth error [um]\n"
-                    "MET91,1,1,0.5,500,500,0.03,20\n")
+    file.write_text("steel,force [kN],area [cm2],distance [km],depth [um],temperature [K],force error [kN],"
+                    "depth error [um]\nMET91,1,1,0.5,500,500,0.03,20\n")
     (k, u), = fit(read(file))["MET91"]["rows"]
-    assert k == pytest.approx(500e-6 * MET91(500.0) / (1e7 * 500), rel=1e-12) and u / k == pytest.approx(0.05, rel=1e-12)
+    assert k == pytest.approx(500e-6 * MET91(500.0) / (1e7 * 500), rel=1e-12)
+    assert u / k == pytest.approx(0.05, rel=1e-12)
     file.write_text("steel,pressure [MPa],distance [m],depth [mm],temperature [degC],temperature error [K]\n"
                     "MET91,10,500,0.5,550,10\n")
     (k, u), = fit(read(file))["MET91"]["rows"]
@@ -73,8 +75,9 @@ def test_command_line_leaves_numbers_and_a_figure(tmp_path, capsys):
 
 @pytest.mark.parametrize("text, words", [
     ("", "a CSV file with a header"), ("steel,force [lb]\nMET71,1\n", "column force = lb: must be one of N, kN"),
-    ("colour [m]\n1\n", "column colour"), ("steel,pressure [Pa],distance [m],depth [mm],temperature [K]\nMET71,x,1,1,400\n",
-                                           "pressure in line 2 = x Pa: must be a number"),
+    ("colour [m]\n1\n", "column colour"),
+    ("steel,pressure [Pa],distance [m],depth [mm],temperature [K]\nMET71,x,1,1,400\n",
+     "pressure in line 2 = x Pa: must be a number"),
     ("steel,pressure [Pa],distance [m],depth [mm],temperature [K]\nMET71,1e6,1,1,1400\n", "temperature = 1400 K"),
     ("steel,pressure [Pa],distance [m],depth [mm],temperature [K]\nX12,1e6,1,1,400\n", "steel = X12"),
     ("steel,pressure [Pa],distance [m],depth [mm],temperature [K]\nMET71,1e6,1,-1,400\n", "depth = -0.001 m: must be"),

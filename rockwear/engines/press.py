@@ -42,7 +42,7 @@ class Press(Engine):
 
 
 def sinking_height(lowest, total):
-    """Height at which points `lowest` (n,) m below y = 0 add up to the depth `total` (m): sum (-lowest - height)+ = total."""
+    """Height (m) at which points `lowest` (n,) m are `total` (m) deep in all: sum (-lowest - height)+ = total."""
     rising = np.sort(lowest)
     depths = (total + np.cumsum(rising)) / np.arange(1, len(rising) + 1)
     return -float(depths[np.flatnonzero(depths > rising)[-1]])

@@ -48,12 +48,12 @@ class WearLaw:
         return ((self.force, self.exponent),)
 
     def volume(self, slid, hardness, area):
-        """Worn volume, m3. slid: {(force, exponent): (n,) N^exponent m}; hardness: Pa; area: m2, 2 r b of a particle."""
+        """Worn volume, m3. slid: {(force, exponent): (n,) N^exponent m}; hardness: Pa; area: m2, 2 r b of each."""
         n, factor = self.exponent, self.share / self.mu
         return self.k * area * slid[self.force, n] * (factor / (area * np.asarray(hardness, float)))**n
 
     def depth_per_k(self, test):
-        """(m,) depth (m) that k = 1 gives in laboratory tests: s (p / H)^n, with p_T / mu for p in the friction forms."""
+        """(m,) depth (m) that k = 1 gives in laboratory tests: s (p / H)^n, p_T / mu for p in the friction forms."""
         pressure = test.pressure if self.force == NORMAL else test.friction_stress / self.mu
         return test.distance * (self.share * pressure / test.hardness)**self.exponent
 
@@ -107,14 +107,15 @@ class PowerLaw(DissipationArchard):
         return PowerLaw(k=k, mu=self.mu, exponent=self.exponent, share=self.share)
 
     def fit_exponent(self, test):
-        """The same law with k and n both fitted, from tests at different p / H. -> (law, Fit of k, (n, its uncertainty)).
+        """The same law with k and n both fitted, from tests at different p / H. -> (law, Fit, (n, its uncertainty)).
 
-        A straight line through log(w / s) over log(p / H). Raises ParameterError for fewer than three tests, or equal p / H.
+        A straight line through log(w / s) over log(p / H). Raises ParameterError for fewer than three
+        tests, or equal p / H.
         """
         require(len(test.depth) > 2, "tests", len(test.depth), "at least 3 to fit an exponent as well")
         x = np.log(self.share * test.friction_stress / (self.mu * test.hardness))
-        require(np.ptp(x) > 1e-9, "pressure", float(test.pressure[0]), "different over hardness in some tests, to fit an "
-                "exponent", "Pa")
+        require(np.ptp(x) > 1e-9, "pressure", float(test.pressure[0]), "different over hardness in some tests, to "
+                "fit an exponent", "Pa")
         weight = 1 / test.relative_error if np.all(test.relative_error > 0) else np.ones(len(x))
         matrix = np.column_stack([x, np.ones(len(x))]) * weight[:, None]
         right = np.log(test.depth / test.distance) * weight
@@ -170,7 +171,7 @@ LAWS = ("dissipation", "pressure", "power", "modes")
 
 
 def wear_law(name, *, k, mu, exponent=1.0, modes=""):
-    """The law called `name` in LAWS. modes: "k/exponent/share, ..." of each mode of the friction; k counts for the others.
+    """The law called `name` in LAWS. modes: "k/exponent/share, ..." of each mode; k counts for the others.
 
     Raises ParameterError for a name that is none of these, or modes that cannot be read.
     """
@@ -218,8 +219,8 @@ class LaboratoryTest:
 
 @dataclass
 class Fit:
-    """k: (modes,) -; uncertainty: (modes,) one standard error, nan where nothing is known of it; depth: (m,) m, as fitted;
-    misfit: chi2 over degrees of freedom, nan without any: well above 1, the tests scatter more than their errors say."""
+    """k: (modes,) -; uncertainty: (modes,) one standard error, nan where nothing is known; depth: (m,) m, as fitted;
+    misfit: chi2 over degrees of freedom, nan without any: well above 1, tests scatter more than their errors say."""
 
     k: np.ndarray
     uncertainty: np.ndarray
@@ -248,7 +249,7 @@ def fit_linear(columns, test, modes):
     matrix, right = columns * weight[:, None], test.depth * weight
     scale = np.linalg.norm(matrix, axis=0)
     require(count >= unknown and np.linalg.cond(matrix / scale) < 1e8, "tests", count,
-            f"at least {unknown}, at different pressure over hardness, to tell {unknown} modes of different exponents apart")
+            f"at least {unknown}, at different pressure over hardness, to tell modes of different exponents apart")
     k = nnls(matrix / scale, right)[0] / scale
     chi2 = float(np.sum((right - matrix @ k)**2))
     freedom = count - unknown

@@ -34,7 +34,8 @@ def key_results(run):
     deviation = ("k off by", percent(run.result("k_deviation"), 1.0), "of what was given")
     return tiles([
         ("k given", number(run.result("k_given")), ""), ("k returned", number(run.result("k_returned")), "w H / (p s)"),
-        deviation, ("worn depth", quantity(run.result("worn_depth"), "m"), f"by the law {quantity(run.result('expected_depth'), 'm')}"),
+        deviation, ("worn depth", quantity(run.result("worn_depth"), "m"),
+                    f"by the law {quantity(run.result('expected_depth'), 'm')}"),
         ("descent of the block", quantity(run.result("descent"), "m"), "in whole particles"),
         ("pressure", quantity(run.result("pressure"), "Pa"), ""),
         ("temperature", quantity(run.result("temperature_end"), "K"), "at the end"),
@@ -63,7 +64,8 @@ def worn_block(run):
     frame(left, (-0.3 * width, 3.1 * width, -0.25 * height, 1.4 * height), "before, and after "
           f"{number(run.result('distance'))} m")
     distance = run.column("distance")
-    right.plot(distance, MM * run.column("expected_depth"), color="#c8a15a", linewidth=3, label="law under the known force")
+    right.plot(distance, MM * run.column("expected_depth"), color="#c8a15a", linewidth=3,
+               label="law under the known force")
     right.plot(distance, MM * run.column("worn_depth"), color="black", linewidth=1, label="simulated")
     right.plot(distance, MM * run.column("descent"), color="#3b7fb0", linewidth=1, label="descent of the block")
     right.set(xlabel="distance / m", ylabel="depth / mm", xlim=(0, None), ylim=(0, None))

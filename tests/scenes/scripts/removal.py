@@ -51,7 +51,8 @@ def spy(add):
     return watched
 
 
-values = parameters.read([*PARAMETERS, Parameter("saw", False, "", flag, "saw the tooth in two half-way")], sys.argv[1:])
+SAW = Parameter("saw", False, "", flag, "saw the tooth in two half-way")
+values = parameters.read([*PARAMETERS, SAW], sys.argv[1:])
 scene, found = Cutting(values), []
 scene.build()
 scene.bodies.add = spy(scene.bodies.add)
