@@ -287,7 +287,8 @@ def main():
         print(f"{name}: {time.process_time() - began:.1f} s", flush=True)
     folder = Path(v.out)
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / "summary.json").write_text(json.dumps({"scene": "stability", "parameters": vars(v), "cases": cases}, indent=1))
+    summary = {"scene": "stability", "parameters": vars(v), "cases": cases}
+    (folder / "summary.json").write_text(json.dumps(summary, indent=1))
     sys.stdout.flush()
     os._exit(0)
 

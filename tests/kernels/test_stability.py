@@ -223,7 +223,8 @@ def test_a_dashpot_alone():
 def test_a_dashpot_of_the_ground_is_that_of_a_fixed_particle():
     x, direction = [[0, 0], [1, 0]], np.array([0.6, 0.8])
     grounded = equal_discs(x, [[0, 1]], kt=4e9, ground=([1], [direction], 9e10, 3e10, 6e5))
-    bonded = equal_discs([*x, x[1] + direction], [[0, 1], [1, 2]], kn=[2e10, 9e10], kt=[4e9, 3e10], fixed=[2], cn=[0, 6e5])
+    bonded = equal_discs([*x, x[1] + direction], [[0, 1], [1, 2]], kn=[2e10, 9e10], kt=[4e9, 3e10], fixed=[2],
+                         cn=[0, 6e5])
     assert grounded == pytest.approx(bonded, rel=1e-9)
     assert grounded < 0.9 * equal_discs(x, [[0, 1]], kt=4e9, ground=([1], [direction], 9e10, 3e10))
 
@@ -241,7 +242,7 @@ def test_a_spring_and_a_dashpot_at_right_angles_and_askew():
 
 
 def spectral_radius(s, step, kn, kt, cn):
-    """Of one step of v⁺ = v − Δt M⁻¹(K x + C v), x⁺ = x + Δt v⁺: all its eigenvalues, by another way than the kernel."""
+    """Of one step v⁺ = v − Δt M⁻¹(K x + C v), x⁺ = x + Δt v⁺, all its eigenvalues: another way than the kernel's."""
     mass = lumped(s["masses"], s["inertias"], 2)
     k = energy_stiffness(s["positions"], s["radii"], s["bonds"], kn, kt) / mass[:, None]
     c = sum(energy_stiffness(s["positions"], s["radii"], [bond], cn_one, 0.0) / mass[:, None]

@@ -31,7 +31,8 @@ def test_bounded_below_the_critical_step_and_not_above(cases, name):
 def test_all_cases_are_judged(cases):
     assert list(cases) == NAMES and all(cases[name]["touched"] >= 5 for name in TOOL)
     rows = list(stability.rows(cases))
-    assert len(rows) == 2 * len(NAMES) + 2 and all(abs(got - expected) <= allowed for _, expected, got, allowed, _ in rows)
+    assert len(rows) == 2 * len(NAMES) + 2
+    assert all(abs(got - expected) <= allowed for _, expected, got, allowed, _ in rows)
     worse = {"a case": {"below": 1e4, "above": 1e4}, "another": {"below": math.nan, "above": math.nan}}
     assert [abs(got - expected) <= allowed for _, expected, got, allowed, _ in stability.rows(worse)] == [
         False, False, False, True]
