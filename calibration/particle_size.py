@@ -2,9 +2,14 @@
 
     python3 -m calibration.particle_size DIR
 
-Flat: a tooth rubs on a plane, and what touches it wears. Whatever the particles, the worn tooth must be the new one cut
-off by the plane that takes away Archard's volume: an exact outline. Cut: the test tooth in miniature, real contacts,
-stopped at one worn volume. Sizes are mean diameters. Leaves particle_size.png and particle_size.md in DIR.
+Two ways of wearing whose outlines are known exactly, whatever the particles:
+
+- flat: a tooth rubs on a plane, and the particle that bears it wears. What is left is the new tooth without the piece
+  of Archard's volume that lies beyond a plane.
+- pattern: the friction work that a cut of the test tooth in miniature spreads along the outline, smoothed, wears it
+  along its normals. The depth d at the curvature c takes the volume d - c d^2 / 2 off a length.
+
+Sizes are mean diameters. Leaves particle_size.png and particle_size.md in DIR.
 """
 import math
 import sys
@@ -14,7 +19,9 @@ from types import SimpleNamespace
 import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
+from scipy.ndimage import gaussian_filter1d
 from scipy.optimize import brentq
+from scipy.spatial import cKDTree
 
 from calibration.runs import Runs
 from rockwear.kernels.outline import area, tooth
@@ -29,13 +36,19 @@ SEEDS = 1, 2, 3
 OUTLINE = dict(height=0.03, width=0.02, rake=math.radians(10), clearance=math.radians(10), tip_radius=2e-3)
 DOWN = np.array([math.sin(math.radians(30)), -math.cos(math.radians(30))])
 """Towards the plane that the tooth rubs on: below and before it."""
-WORN = 20e-6
-"""Worn volume of the comparison, m3 per metre of thickness."""
-GRID = 2e-5
+WORN, PATTERN_WORN = 20e-6, 4e-6
+"""Worn volumes of the comparison, m3 per metre of thickness."""
+STRIP = 0.8e-3
+"""Length (m) over which the place of a worn face is averaged, that of the largest particles."""
+RAYS = 0.05e-3
+"""Distance (m) between the normals along which the pattern wears."""
+SMOOTH = 2e-3
+"""Standard deviation (m) of the smoothing of the pattern."""
 CUT = dict(width=0.06, height=0.04, radius_min=1.5e-3, radius_max=2.2e-3, tooth_height=0.03, tooth_width=0.02, rake=10,
-           clearance=10, tip_radius=2e-3, depth_of_cut=0.01, start_up=0.006, cycles=0, snapshot_period=5e-5, heat="false",
-           acceleration=2e5, report="false")
-CUT_WORN = 8e-6
+           clearance=10, tip_radius=2e-3, depth_of_cut=0.01, start_up=0.008, cycles=0, heat="false", acceleration=1,
+           tool_radius_min=0.22e-3, tool_radius_max=0.28e-3, report="false")
+PORTIONS = 1 / 64, 1 / 8, 1 / 2, 2
+"""Wear in a visit, of a particle's volume, at which the depth rule is tried."""
 
 
 def cut_off(polygon, height):
@@ -63,98 +76,147 @@ def particles(polygon, size, seed, removal):
                 removal=removal, material=STEEL)
 
 
-def rub(tool, volume, parts=8):
-    """Wear `volume` (m3) off what reaches furthest along DOWN: a rigid tool's one bearing particle, a part at a time."""
+def rub(tool, volume, portion=1 / 8):
+    """Wear `volume` (m3) off what reaches furthest along DOWN, the one particle that bears a rigid tool.
+
+    portion: of a mean particle's volume, the wear in a visit.
+    """
     erosion, reach = tool.erosion, tool.positions @ DOWN + tool.radii
-    portion = float(tool.volumes.mean()) / parts
-    visits = math.ceil(volume / portion)
+    visits = math.ceil(volume / (portion * float(tool.volumes.mean())))
     for _ in range(visits):
         skin = np.fromiter(erosion.skin, int)
         worn = np.zeros(tool.count)
         worn[skin[np.argmax(reach[skin])]] = volume / visits
         erosion.wear(worn)
-        erosion.drop(erosion.detached() if not erosion.alive[tool.mounted].all() else [])
-    return tool
 
 
-def flat_row(polygon, size, seed, removal):
-    """One tooth rubbed: its outline, and how far it is off the exact one."""
-    tool = rub(particles(polygon, size, seed, removal), WORN)
+def unexplained(tool):
+    """What a removal rule leaves unexplained, of Archard's volume."""
+    book = tool.erosion.volume_balance()
+    return book["unexplained"] / book["archard"]
+
+
+def flat(polygon, size, seed, strip=STRIP):
+    """A tooth rubbed on a plane: outline, and how far (m) its face is off the exact one, root mean square of strips."""
+    tool = particles(polygon, size, seed, "volume")
+    rub(tool, WORN)
     alive = tool.erosion.alive
     target, height = exact(polygon, WORN)
-    ends = [p for p in target if abs(p @ DOWN - height) < 1e-9]
     along = np.array([DOWN[1], -DOWN[0]])
-    low, high = sorted(float(p @ along) for p in ends)
-    # The flat as the plane feels it: the furthest reach over strips a coarse particle wide, away from its corners.
-    strips = np.arange(low + SIZES[-1], high - SIZES[-1], SIZES[-1] / 2)
+    low, high = sorted(float(p @ along) for p in target if abs(p @ DOWN - height) < 1e-9)
     across, reach = tool.positions[alive] @ along, tool.positions[alive] @ DOWN + tool.radii[alive]
-    off = np.array([reach[abs(across - s) < SIZES[-1] / 2].max() - height for s in strips])
-    book = tool.erosion.volume_balance()
-    return SimpleNamespace(size=size, seed=seed, off=float(np.sqrt(np.mean(off**2))), mean=float(off.mean()),
-                           unexplained=book["unexplained"] / book["archard"], tool=tool,
-                           outline=shapes.outlines(tool.positions[alive], tool.radii[alive])[0])
+    places = np.arange(low + strip, high - strip, strip / 2)
+    off = np.array([reach[abs(across - place) < strip / 2].max() - height for place in places])
+    return SimpleNamespace(outline=left_of(tool), off=float(np.sqrt(np.mean(off**2))), unexplained=unexplained(tool))
 
 
-def rate(sizes, errors):
-    """Exponent of the errors over the sizes."""
-    return float(np.polyfit(np.log(sizes), np.log(errors), 1)[0])
+def left_of(tool):
+    """Outline of the particles that are left."""
+    alive = tool.erosion.alive
+    return shapes.outlines(tool.positions[alive], tool.radii[alive])[0]
 
 
-def cut_shape(run):
-    """Outline (m) at the worn volume CUT_WORN, and the volume that the rule leaves unexplained there, of Archard's."""
-    model = run.model
-    volume = np.interp(run.times, run.column("time"), run.column("worn_volume"))
-    shot = run.snapshot(int(np.argmin(abs(volume - CUT_WORN))))
-    book = run.summary["audits"]["mass"]
-    alive = shot["alive"]
-    return SimpleNamespace(outline=shapes.outlines(model["tool_positions"][alive], model["tool_radii"][alive],
-                                                   shot["worn_depth"][alive])[0],
-                           worn=float(volume[np.argmin(abs(volume - CUT_WORN))]),
-                           unexplained=book["unexplained"] / book["archard"], removed=run.result("particles_removed"),
-                           end=book["archard"] / STEEL.density)
+class Pattern:
+    """Where a cut wears the outline: density (n,) 1/m of the worn volume along it, normals, curvature."""
+
+    def __init__(self, run):
+        model, shot = run.model, run.snapshot(-1)
+        points, arc = shapes.contour(model["outline"], RAYS)
+        worn = shot["worn_depth"] * model["tool_radii"]
+        nearest = cKDTree(points).query(model["tool_positions"])[1]
+        density = gaussian_filter1d(np.bincount(nearest, worn, len(points)), SMOOTH / RAYS)
+        steps = np.roll(points, -1, axis=0) - np.roll(points, 1, axis=0)
+        turned = np.unwrap(np.arctan2(steps[:, 1], steps[:, 0]))
+        self.inward = np.column_stack([-np.sin(turned), np.cos(turned)])
+        curvature = gaussian_filter1d(np.gradient(turned, RAYS), 2)
+        self.worn = density > 0.01 * density.max()
+        density = np.where(self.worn, density, 0.0)
+        self.points, self.density, self.curvature = points, density / (density.sum() * RAYS), curvature
+
+    def depth(self, volume):
+        """(n,) m, d of d - c d^2 / 2 = volume times density."""
+        area, c = volume * self.density, np.where(abs(self.curvature) < 1, 1e-3, self.curvature)
+        return (1 - np.sqrt(np.maximum(1 - 2 * c * area, 0.0))) / c
+
+    def entries(self, tool):
+        """For each point the particles that its normal meets, and the depths (m) at which it enters them, in order."""
+        tree = cKDTree(tool.positions)
+        for point, normal in zip(self.points, self.inward):
+            near = np.array(tree.query_ball_point(point + 2.5e-3 * normal, 3.5e-3), int)
+            away = tool.positions[near] - point
+            ahead, aside = away @ normal, away @ np.array([-normal[1], normal[0]])
+            hit = (abs(aside) < tool.radii[near]) & (ahead > -tool.radii[near])
+            depth = ahead[hit] - np.sqrt(tool.radii[near][hit]**2 - aside[hit]**2)
+            order = np.argsort(depth)
+            yield near[hit][order], depth[order]
+
+    def wear(self, tool, volume, portion=1 / 8):
+        """Wear `volume` (m3) off the tool. -> (n,) m, the depth at which each normal enters what is left."""
+        met = [pair if worn else None for pair, worn in zip(self.entries(tool), self.worn)]
+        alive = tool.erosion.alive
+        # A visit's wear of a particle is `portion` of its volume where the pattern is densest.
+        width = 2 * float(tool.radii.mean())
+        visits = math.ceil(volume * self.density.max() * width / (portion * float(tool.volumes.mean())))
+        for _ in range(visits):
+            worn = np.zeros(tool.count)
+            for pair, density in zip(met, self.density):
+                if pair:
+                    first = pair[0][alive[pair[0]]]
+                    worn[first[0]] += volume / visits * density * RAYS
+            tool.erosion.wear(worn)
+        return np.array([pair[1][alive[pair[0]]][0] if pair else np.nan for pair in met])
 
 
-def mask(outline, box):
-    """Cells of a grid over box = (left, right, bottom, top) m that lie inside a polygon."""
-    from matplotlib.path import Path as Polygon
-    x, y = (np.arange(box[2 * k] + GRID / 2, box[2 * k + 1], GRID) for k in (0, 1))
-    points = np.stack(np.meshgrid(x, y), -1)
-    return Polygon(outline).contains_points(points.reshape(-1, 2))
+def patterned(pattern, polygon, size, seed):
+    """A tooth worn by the pattern: outline, and how far (m) it is off the exact one, root mean square over strips."""
+    tool = particles(polygon, size, seed, "volume")
+    found = pattern.wear(tool, PATTERN_WORN)
+    window = round(STRIP / RAYS)
+    off = np.convolve((found - pattern.depth(PATTERN_WORN))[pattern.worn], np.full(window, 1 / window), "valid")
+    return SimpleNamespace(outline=left_of(tool), off=float(np.sqrt(np.mean(off**2))), unexplained=unexplained(tool))
+
+
+def rate(errors):
+    """Exponent of the errors over SIZES."""
+    return float(np.polyfit(np.log(SIZES), np.log(errors), 1)[0])
+
+
+def mean_square(rows):
+    """{size: root mean square over the packings}, in the order of SIZES."""
+    return [float(np.sqrt(np.mean([row.off**2 for row in rows[size]]))) for size in SIZES]
 
 
 def main(folder):
-    """Rub, cut, compare; write the page's pieces."""
+    """Rub, wear, compare; write the figure and the table."""
     folder.mkdir(parents=True, exist_ok=True)
     polygon = tooth(**OUTLINE)
     with Runs(folder, at_once=1, keep=True) as runs:
-        futures = {(size, rule): runs.start(f"cut_{1e3 * size:g}mm_{rule}", "yade_scripts/test_tooth.py", **CUT, removal=rule,
-                                            tool_radius_min=(1 - SPREAD) * size / 2, tool_radius_max=(1 + SPREAD) * size / 2)
-                   for size, rule in [*((size, "volume") for size in SIZES), (SIZES[1], "depth")]}
-        flat = {size: [flat_row(polygon, size, seed, "volume") for seed in SEEDS] for size in SIZES}
-        depth = flat_row(polygon, SIZES[1], SEEDS[0], "depth")
-        cuts = {key: cut_shape(future.result()) for key, future in futures.items()}
-    off = [float(np.sqrt(np.mean([row.off**2 for row in flat[size]]))) for size in SIZES]
-    exponent = rate(SIZES, off)
+        pattern = Pattern(runs.start("cut", "yade_scripts/test_tooth.py", **CUT).result())
+    ways = {"flat": {size: [flat(polygon, size, seed) for seed in SEEDS] for size in SIZES},
+            "pattern": {size: [patterned(pattern, polygon, size, seed) for seed in SEEDS] for size in SIZES}}
+    off = {name: mean_square(rows) for name, rows in ways.items()}
     lines = ["# Particle size and removal rule", "",
-             f"A tooth of 30 x 20 mm. Flat: {1e6 * WORN:g} mm2 rubbed off on a plane; `off` is the root mean square distance of the "
-             "flat it leaves from the exact plane, three packings.", "",
-             "| mean diameter, mm | off, mm | over diameter | volume unexplained | cut: off the finest, of the worn area |",
-             "|---|---|---|---|---|"]
-    box = (-1e-3, 21e-3, -1e-3, 12e-3)
-    finest = mask(cuts[SIZES[0], "volume"].outline, box)
-    for size, error in zip(SIZES, off):
-        differs = np.sum(mask(cuts[size, "volume"].outline, box) != finest) * GRID**2 / CUT_WORN
-        worst = max(abs(row.unexplained) for row in flat[size])
-        lines.append(f"| {1e3 * size:g} | {1e3 * error:.3f} | {error / size:.2f} | {worst:.0e} | {differs:.2f} |")
-    a, b = cuts[SIZES[1], "volume"], cuts[SIZES[1], "depth"]
-    lines += ["", f"The outline converges with the size to the power {exponent:.2f}.", "",
-              f"Depth rule, 0.5 mm: explains {100 * depth.unexplained:+.1f} % of Archard's volume too little or much on the flat "
-              f"and {100 * b.unexplained:+.1f} % in the cut ({b.removed} particles gone); the conserving rule "
-              f"{flat[SIZES[1]][0].unexplained:+.0e} and {a.unexplained:+.0e} ({a.removed} particles gone)."]
+             f"A tooth of 30 x 20 mm, {len(SEEDS)} packings a size. Flat: {1e6 * WORN:g} mm2 rubbed off on a plane. "
+             f"Pattern: {1e6 * PATTERN_WORN:g} mm2 worn", "by the friction work of a cut. `off` is the root mean square "
+             "distance between the worn face and the exact one.", "",
+             "| mean diameter, mm | flat: off, mm | pattern: off, mm | Archard's volume unexplained, at most |",
+             "|---|---|---|---|"]
+    for k, size in enumerate(SIZES):
+        worst = max(abs(row.unexplained) for rows in ways.values() for row in rows[size])
+        lines.append(f"| {1e3 * size:g} | {1e3 * off['flat'][k]:.3f} | {1e3 * off['pattern'][k]:.3f} | {worst:.0e} |")
+    lines += ["", "Off falls with the size to the power " + " and ".join(
+        f"{rate(off[name]):.2f} ({name})" for name in ways) + ".", "",
+        "The depth rule instead, 0.5 mm: what it takes off, less Archard's volume, over it.", "",
+        "| wear in a visit, of a particle | flat | pattern |", "|---|---|---|"]
+    for portion in PORTIONS:
+        tools = [particles(polygon, SIZES[1], SEEDS[0], "depth") for _ in ways]
+        rub(tools[0], WORN, portion)
+        pattern.wear(tools[1], PATTERN_WORN, portion)
+        lines.append(f"| {portion:.3g} | " + " | ".join(f"{100 * unexplained(tool):+.1f} %" for tool in tools) + " |")
     (folder / "particle_size.md").write_text("\n".join(lines) + "\n")
     print("\n".join(lines))
     with matplotlib.rc_context(plots.STYLE):
-        draw(polygon, flat, cuts, off, exponent).savefig(folder / "particle_size.png")
+        draw(polygon, pattern, ways, off).savefig(folder / "particle_size.png")
 
 
 def closed(outline):
@@ -162,29 +224,30 @@ def closed(outline):
     return 1e3 * np.vstack([outline, outline[:1]]).T
 
 
-def draw(polygon, flat, cuts, off, exponent):
-    """Worn outlines on the plane and in the cut, and how the first converge."""
+def draw(polygon, pattern, ways, off):
+    """Outlines worn both ways over the exact ones, and how far they are off, over the size."""
     figure = Figure(figsize=(14, 4.8), layout="constrained")
     left, middle, right = figure.subplots(1, 3, width_ratios=(1, 1, 0.8))
-    target, _ = exact(polygon, WORN)
-    colours = dict(zip(SIZES, ("#2c6e91", "#c8a15a", "#b5341d")))
-    for axes, title in ((left, f"rubbed on a plane, {1e6 * WORN:g} mm²"), (middle, f"cut, {1e6 * CUT_WORN:g} mm²")):
+    worn_face = pattern.points + pattern.depth(PATTERN_WORN)[:, None] * pattern.inward
+    targets = {"flat": exact(polygon, WORN)[0], "pattern": worn_face}
+    titles = {"flat": f"rubbed on a plane, {1e6 * WORN:g} mm²",
+              "pattern": f"worn as by a cut, {1e6 * PATTERN_WORN:g} mm²"}
+    for axes, (name, rows) in zip((left, middle), ways.items()):
         axes.fill(*closed(polygon), facecolor="#eef0f1", edgecolor="0.6", linewidth=1, linestyle="--")
-        axes.set(title=title, aspect="equal", xlabel="mm", xlim=(4, 21), ylim=(-1, 11))
-    for size, colour in colours.items():
-        left.plot(*closed(flat[size][0].outline), color=colour, linewidth=1.2, label=f"{1e3 * size:g} mm")
-        middle.plot(*closed(cuts[size, "volume"].outline), color=colour, linewidth=1.2, label=f"{1e3 * size:g} mm")
-    left.plot(*closed(target), color="black", linewidth=1.6, label="exact")
-    middle.plot(*closed(cuts[SIZES[1], "depth"].outline), color="0.3", linewidth=1, linestyle=":", label="0.5 mm, depth rule")
-    left.legend(loc="upper left")
-    middle.legend(loc="upper left")
+        axes.plot(*closed(targets[name]), color="black", linewidth=1.6, label="exact")
+        for size, colour in zip(SIZES, ("#2c6e91", "#c8a15a", "#b5341d")):
+            axes.plot(*closed(rows[size][0].outline), color=colour, linewidth=1.2, label=f"{1e3 * size:g} mm")
+        axes.set(title=titles[name], aspect="equal", xlabel="mm", xlim=(-13, 1), ylim=(-0.5, 10.5))
+        axes.legend(loc="upper left")
     sizes = 1e3 * np.array(SIZES)
-    for row in [row for rows in flat.values() for row in rows]:
-        right.loglog(1e3 * row.size, 1e3 * row.off, ".", color=colours[row.size])
-    right.loglog(sizes, 1e3 * np.array(off), "o-", color="black", label=f"power {exponent:.2f}")
-    right.loglog(sizes, 1e3 * off[-1] * sizes / sizes[-1], "--", color="0.6", label="power 1")
-    right.set(xlabel="mean diameter / mm", ylabel="flat off the exact plane / mm", title="convergence")
+    for (name, errors), marker in zip(off.items(), "os"):
+        right.loglog(sizes, 1e3 * np.array(errors), marker + "-", color="black" if name == "flat" else "#7d868c",
+                     label=f"{name}, power {rate(errors):.2f}")
+        for size in SIZES:
+            right.loglog([1e3 * size] * len(SEEDS), [1e3 * row.off for row in ways[name][size]], ".", color="0.6")
+    right.set(xlabel="mean diameter / mm", ylabel="worn face off the exact one / mm", title="convergence")
     right.set_xticks(sizes, [f"{s:g}" for s in sizes])
+    right.set_yticks([0.05, 0.1, 0.2, 0.3], ["0.05", "0.1", "0.2", "0.3"])
     right.minorticks_off()
     right.legend()
     return figure
