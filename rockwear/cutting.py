@@ -506,6 +506,7 @@ class Cutting(scene.Scene):
                  "mass_lost": (self.tool.erosion.mass_fraction_lost, "-"),
                  "worn_volume": (self.tool.erosion.archard_volume, "m3/m"),
                  "particles_removed": (int(np.sum(~self.tool.erosion.alive)), "-"),
+                 "dropped_volume": (self.tool.erosion.lost_with_pieces, "m3/m"),
                  **self.bonds.log(), **{f"rock_{k}": value for k, value in self.rock.report().items()},
                  "tool_particles": (self.tool.count, "-")}
         if self.profile:

@@ -8,7 +8,8 @@ or, with Coulomb friction p_t = mu p and the dissipation rate D = p_t v per area
 
     dw/dt = (k / mu) D / H(theta)                                (M 6.9)
 
-so that the friction work W wears the volume V = (k / mu) W / H, whatever the area it is spread over.
+so that the friction work W wears the volume V = (k / mu) W / H, whatever the area it is spread over. The laws that
+engines use, by particle, are in wear_laws.
 """
 import warnings
 
@@ -91,12 +92,3 @@ def wear_coefficient(*, depth, pressure, distance, hardness):
     """
     return (positive("depth", depth, "m") * positive("hardness", hardness, "Pa")
             / (positive("pressure", pressure, "Pa") * positive("distance", distance, "m")))
-
-
-def worn_volume(*, k, mu, work, hardness):
-    """Volume worn by the friction work, (k / mu) W / H (M 6.9 times area and time), m3.
-
-    k: Archard's coefficient (-); mu: Coulomb friction coefficient (-); work: J, scalar or array; hardness: Pa, like work.
-    With W = mu F s this is Archard's k F s / H. Raises ParameterError for k < 0 or mu <= 0.
-    """
-    return not_negative("k", k) / positive("mu", mu) * np.asarray(work, float) / np.asarray(hardness, float)

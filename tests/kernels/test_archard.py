@@ -2,7 +2,7 @@
 import numpy as np
 import pytest
 
-from rockwear.kernels.archard import (BRINELL, MET71, MET91, Hardness, wear_coefficient, wear_rate, worn_volume)
+from rockwear.kernels.archard import (BRINELL, MET71, MET91, Hardness, wear_coefficient, wear_rate)
 from rockwear.kernels.checks import ParameterError
 
 TABLE = [0, 200, 300, 400, 500, 600]
@@ -34,12 +34,11 @@ def test_laboratory_rows(steel, depth, pressure, celsius, k):
 
 
 def test_archard_volume_of_a_block():
-    """A block of area A under the force F over the distance s loses k F s / H, by depth and by work alike."""
-    k, mu, force, area, velocity, time, hardness = 0.01, 0.3, 800.0, 25e-6, 0.117, 850.0, 5e9
+    """A block of area A under the force F over the distance s loses k F s / H."""
+    k, force, area, velocity, time, hardness = 0.01, 800.0, 25e-6, 0.117, 850.0, 5e9
     exact = k * force * velocity * time / hardness
     depth = wear_rate(k=k, pressure=force / area, slip_velocity=velocity, hardness=hardness) * time
     assert depth * area == pytest.approx(exact, rel=1e-14)
-    assert worn_volume(k=k, mu=mu, work=mu * force * velocity * time, hardness=hardness) == pytest.approx(exact, rel=1e-14)
     assert wear_coefficient(depth=depth, pressure=force / area, distance=velocity * time,
                             hardness=hardness) == pytest.approx(k, rel=1e-14)
 
@@ -55,8 +54,7 @@ def test_slip_direction_does_not_matter():
     (lambda: wear_rate(k=-1, pressure=1, slip_velocity=1, hardness=1), "k"),
     (lambda: wear_rate(k=1, pressure=-1, slip_velocity=1, hardness=1), "pressure"),
     (lambda: wear_rate(k=1, pressure=1, slip_velocity=1, hardness=0), "hardness"),
-    (lambda: wear_coefficient(depth=1, pressure=0, distance=1, hardness=1), "pressure"),
-    (lambda: worn_volume(k=1, mu=0, work=1, hardness=1), "mu")])
+    (lambda: wear_coefficient(depth=1, pressure=0, distance=1, hardness=1), "pressure")])
 def test_bad_input_names_the_parameter(call, name):
     with pytest.raises(ParameterError, match=f"^{name} = "):
         call()
