@@ -5,12 +5,14 @@ M 7.2 asks for an automatic procedure that follows cracks, chips and wear, as co
 import math
 
 import numpy as np
+from scipy.sparse import csr_matrix
+from scipy.sparse.csgraph import connected_components
 from scipy.spatial import Delaunay
 
 from rockwear.kernels.checks import positive, require
 
-# Tighter than 2 particle radii, pores of a random packing begin to count as free surface; each tenth above lets
-# cracks open by a tenth of a radius more before they count.
+# Tighter than 2 particle radii, gaps between touching neighbours begin to let the medium into a random packing; each
+# tenth above lets cracks open by a tenth of a radius more before they count.
 ALPHA = 2.2
 
 _FLAT = 1e-12  # squared volume of a simplex, against the product of its squared edges, below which it is flat
@@ -22,8 +24,8 @@ def free_surface(*, positions, radii, alpha=ALPHA, in_contact=None):
     positions   (n, 2) or (n, 3) centres, m
     radii       (n,) m, greater than 0
     alpha       size of the gaps that are closed, in mean radii of the particles around them, greater than 1. A crack
-                is free surface once its walls stand 2 (alpha - 1) radii apart (1.2 diameters at 2.2), a hole once a
-                circle of alpha radii passes through the centres of its rim and holds no other.
+                is free surface once its walls stand 2 (alpha - 1) radii apart (1.2 diameters at 2.2). A hole or a pore
+                is free surface once a way as wide leads to it from outside: what is enclosed meets no air or water.
     in_contact  (n,) bool, particles touching another body: they are on the contact interface and not on the free
                 surface (M 7.2), their share is 0
 
@@ -118,8 +120,10 @@ def _alpha_complex(positions, radii, alpha):
     points = np.vstack([positions, middle + 10 * reach * corners])
     sizes = np.concatenate([radii, np.full(dimension + 1, np.nan)])  # no simplex with a ghost is small enough
 
-    simplices = np.sort(Delaunay(points).simplices, axis=1)
+    triangulation = Delaunay(points)
+    simplices = np.sort(triangulation.simplices, axis=1)
     belongs = _circumsphere(points, simplices)[1] < alpha * sizes[simplices].mean(axis=1)
+    belongs |= _enclosed(points, triangulation, belongs, n, alpha * sizes)
     body = [(simplices[belongs], np.zeros(belongs.sum(), int))]
     for size in range(dimension, 1, -1):
         columns = [np.delete(np.arange(size + 1), k) for k in range(size + 1)]
@@ -136,6 +140,21 @@ def _alpha_complex(positions, radii, alpha):
         belongs = (beside > 0) | (~occupied & (radius < alpha * sizes[simplices].mean(axis=1)))
         body.insert(0, (simplices[belongs], 2 - beside[belongs]))
     return body
+
+
+def _enclosed(points, triangulation, belongs, n, reach):
+    """Simplices of pores that no way leads to from outside, through gaps wider than `reach` (by particle) closes."""
+    empty, beside = np.flatnonzero(~belongs), triangulation.neighbors
+    own, across = (a.ravel() for a in np.broadcast_arrays(empty[:, None], beside[empty]))
+    facets = np.concatenate([np.delete(triangulation.simplices[empty], k, axis=1)[:, None]
+                             for k in range(beside.shape[1])], axis=1).reshape(len(own), -1)
+    passable = (across >= 0) & ~belongs[across]
+    own, across, facets = own[passable], across[passable], facets[passable]
+    wide = ~(_circumsphere(points, facets)[1] < reach[facets].mean(axis=1))
+    ways = csr_matrix((np.ones(wide.sum(), bool), (own[wide], across[wide])), shape=(len(belongs),) * 2)
+    pore = connected_components(ways, directed=False)[1]
+    outside = np.unique(pore[(triangulation.simplices >= n).any(axis=1)])
+    return ~belongs & ~np.isin(pore, outside)
 
 
 def _circumsphere(points, simplices):

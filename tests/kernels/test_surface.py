@@ -4,6 +4,7 @@ import pytest
 from scipy.spatial import cKDTree
 
 from rockwear.kernels.checks import ParameterError
+from rockwear.kernels.packing import pack
 from rockwear.kernels.surface import free_surface
 
 pi = np.pi
@@ -124,7 +125,8 @@ def test_ring_of_discs_has_its_outer_circle():
     got = unit(filled)
     assert got.sum() == pytest.approx(2 * pi * (centre_circle + 1), rel=2e-3)
     assert np.ptp(got[:count]) < 1e-9 and np.all(got[count:] == 0)
-    assert unit(ring).sum() == pytest.approx(4 * pi * centre_circle, rel=2e-3)  # both sides of a thin ring
+    assert unit(ring).sum() == pytest.approx(2 * pi * (centre_circle + 1), rel=2e-3)  # a closed one has no inside
+    assert unit(ring[2:]).sum() == pytest.approx(4 * 57 + 2 * pi, rel=1e-3)  # an open one has both sides and two ends
 
 
 # ---- random packings
@@ -172,13 +174,35 @@ def test_notch_is_free_to_its_tip():
     assert beside.sum() > 20 and got[beside] == pytest.approx(2.0)
 
 
-def test_hole_is_found_where_it_is_larger_than_alpha():
+def test_a_hole_is_free_once_a_way_leads_to_it():
     plate = triangles(24, 26)
-    reach = np.linalg.norm(plate - plate[12 * 24 + 12], axis=1)
+    centre = plate[12 * 24 + 12]
+    reach = np.linalg.norm(plate - centre, axis=1)
     whole = unit(plate).sum()
-    assert unit(plate[reach > 0.5]).sum() == pytest.approx(whole)  # one particle missing, 2 radii to its neighbours
-    assert unit(plate[reach > 0.5], alpha=1.9).sum() > unit(plate, alpha=1.9).sum() + 3
-    assert unit(plate[reach > 6.5]).sum() == pytest.approx(whole + 2 * pi * 6.5, abs=6)
+    assert unit(plate[reach > 6.5]).sum() == pytest.approx(whole)  # enclosed: nothing flows there
+    way = (abs(plate[:, 1] - centre[1]) < 3) & (plate[:, 0] > centre[0])
+    left = (reach > 6.5) & ~way
+    got = unit(plate[left])
+    assert got.sum() > whole + 2 * pi * 6.5 and (got[reach[left] < 7.6] > 0).all()
+
+
+def test_a_hollow_ball_is_free_outside_only():
+    ball = grid(11, 11, 11) - 10.0
+    distance = np.linalg.norm(ball, axis=1)
+    solid, hollow = ball[distance < 9.5], ball[(distance < 9.5) & (distance > 5)]
+    assert unit(hollow).sum() == pytest.approx(unit(solid).sum())
+    drilled = hollow[(abs(hollow[:, :2]) > 2.5).any(axis=1) | (hollow[:, 2] < 0)]
+    assert unit(drilled).sum() > unit(hollow).sum() + 4 * pi * 3**2
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_pores_of_loose_packings_are_no_surface(seed):
+    packing = pack(box=(0.05, 0.04), radius_min=1e-3, radius_max=1.5e-3, porosity=0.17, seed=seed)
+    positions, radii = packing.positions, packing.radii
+    exposed = free_surface(positions=positions, radii=radii)
+    margin = np.minimum(positions, np.array([0.05, 0.04]) - positions).min(axis=1)
+    assert np.all(exposed[margin > 4e-3] == 0)
+    assert exposed.sum() == pytest.approx(0.18 - (8 - 2 * pi) * 1.25e-3, rel=0.03)
 
 
 def test_chips_have_surfaces_of_their_own():
