@@ -486,3 +486,80 @@ def test_lone_particles():
     assert network.stable_step() == np.inf
     network.advance(1e9)
     assert network.temperature.tolist() == network.steady_state().tolist() == [300.0, 400.0, 500.0]
+
+
+# ---- hard cases: stable, bounded, books closed
+
+def one_contact(network_of):
+    """Two particles, capacities 1e4 apart."""
+    return network_of(capacity=[1e-2, 1e2], edges=[[0, 1]], conductance=50.0, temperature=[1500.0, 280.0])
+
+
+def stiff_chain(network_of):
+    """Conductances and capacities 1e4 apart, in turns."""
+    return network_of(capacity=np.tile([1e-3, 10.0, 1.0], 20), edges=[[i, i + 1] for i in range(59)],
+                      conductance=np.resize([1.0, 1e4, 10.0, 1e2], 59),
+                      temperature=np.resize([280.0, 1500.0, 700.0], 60))
+
+
+def in_water(network_of):
+    """A hot chain in water at 25,000 W/m2K, one particle all by itself."""
+    network = network_of(capacity=np.full(6, 5.0), edges=[[0, 1], [1, 2], [2, 3], [3, 4]], conductance=60.0,
+                         temperature=1200.0)
+    network.convect(range(6), 25000 * 4e-3, 283.0)
+    return network
+
+
+def glowing(network_of):
+    """Radiation from 1500 K into a room at 280 K, some particles a hundred times lighter."""
+    network = network_of(capacity=np.resize([5.0, 0.05], 8), edges=[[i, i + 1] for i in range(7)], conductance=2.0,
+                         temperature=1500.0)
+    network.radiate(range(8), 0.02, 280.0)
+    return network
+
+
+@pytest.mark.parametrize("case", [one_contact, stiff_chain, in_water, glowing])
+@pytest.mark.parametrize("steps", [0.3, 7.0, 1000.0])
+def test_hard_cases_stay_bounded_and_keep_their_books(case, steps):
+    network = case(HeatNetwork)
+    content = network.heat_content
+    duration = steps * network.stable_step()
+    for visit in range(5):
+        network.advance(duration)
+        assert 280 - 1e-9 <= network.temperature.min() <= network.temperature.max() <= 1500 + 1e-9
+        if visit == 1:  # the hottest particle goes, with its heat
+            hottest = int(np.argmax(np.where(network.present, network.temperature, 0.0)))
+            carried = network.capacity[hottest] * network.temperature[hottest]
+            assert network.remove(hottest) == pytest.approx(carried)
+        if visit == 2:  # the surface doubles at once
+            state = network.state()
+            there = network.present
+            network.convect(there, 2 * state["convection"][there] + 1e-3, 283.0)
+            network.radiate(there, 2 * state["radiation"][there], 280.0)
+    book = network.balance
+    assert network.heat_content - content == pytest.approx(sum(book.values()), abs=1e-12 * content)
+
+
+def test_what_nothing_holds_together_keeps_its_temperature():
+    network = HeatNetwork(capacity=[1e-4, 1.0, 1e4], edges=[], conductance=1.0, temperature=[1500.0, 300.0, 280.0])
+    network.advance(1e6)
+    assert network.temperature.tolist() == [1500.0, 300.0, 280.0]
+
+
+def test_a_step_above_the_stable_one_is_refused_after_the_surface_doubled():
+    network = in_water(HeatNetwork)
+    step = network.stable_step()
+    network.advance(10 * step, step=step)
+    network.convect(range(6), 2 * 25000 * 4e-3, 283.0)
+    with pytest.raises(ParameterError, match="stable step"):
+        network.advance(10 * step, step=step)
+    assert network.advance(10 * step) > 20  # left to itself it divides more finely
+
+
+def test_several_visits_and_one_visit_of_many_steps_agree():
+    whole, parts = tangle(seed=4), tangle(seed=4)
+    duration = 400 * whole.stable_step()
+    whole.advance(duration)
+    for _ in range(1000):  # each below one step, as a heat engine visited often
+        parts.advance(duration / 1000)
+    assert parts.temperature == pytest.approx(whole.temperature, rel=2e-3)
