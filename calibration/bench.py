@@ -21,6 +21,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 
+from calibration import heat as heat_study  # noqa: E402
 from calibration import loading_speed  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -175,7 +176,7 @@ def main(folder):
     result = {"sampling": sampling, "heat": heat, "step": step, "overhead": overhead,
               "seeds": {name: over_seeds(found) for name, found in seeds.items()}}
     (folder / "bench.json").write_text(json.dumps(result, indent=1))
-    text = "\n".join([markdown(result), *loading_speed.curve(folder)])
+    text = "\n".join([markdown(result), *loading_speed.curve(folder), *heat_study.curve(folder)])
     (folder / "bench.md").write_text(text)
     print(text)
 

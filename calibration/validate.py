@@ -12,7 +12,7 @@ from pathlib import Path
 
 import matplotlib
 
-from calibration import uniaxial_validation, wear_validation
+from calibration import heat, uniaxial_validation, wear_validation
 from calibration.runs import RunFailed, Runs
 from calibration.verdicts import Row, Section
 from rockwear.report import page, plots
@@ -51,6 +51,7 @@ SECTIONS = [
             {f"tooth_{seed}": ("yade_scripts/test_tooth.py", {"seed": seed, "coarsening": 3}) for seed in SEEDS}),
     *uniaxial_validation.SECTIONS,
     *wear_validation.SECTIONS,
+    *heat.SECTIONS,
 ]
 
 

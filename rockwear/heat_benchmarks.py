@@ -187,9 +187,8 @@ class HeatBenchmarks(scene.Scene):
         """Compare with the exact solution; on to the next instant, or to the next case from t = 0."""
         gap = np.abs(self.heat.network.temperature - self.expected()) / self.expected().max()
         self.errors[self.stage] = gap.max(), np.sqrt(np.mean(gap**2))
-        case, book = self.case, self.heat.network.balance
-        gained = sum(book.values())
-        self.books[self.cases.index(case)] = book["generated"], book["convected"], self.heat.network.heat_content - gained
+        case, book, stored = self.case, self.heat.network.balance, self.heat.network.heat_content
+        self.books[self.cases.index(case)] = book["generated"], book["convected"], stored - sum(book.values())
         super().end_stage(folder)
         self._stand()
         if self.finished:

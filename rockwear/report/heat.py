@@ -1,4 +1,4 @@
-"""Figures of the heat benchmarks: profiles over the exact solutions, errors and their convergence, the discs in colour."""
+"""Figures of the heat benchmarks: profiles over the exact solutions, errors and convergence, the discs in colour."""
 from collections import namedtuple
 
 import numpy as np
@@ -32,8 +32,8 @@ def sections(run):
     return [
         Section("Key results", f"{finest} diameters across the depth; errors are parts of the range of temperature at "
                 "their instant, over all discs.", [key_results(run, shown, errors), error_table(run, shown, errors)]),
-        Section("Profiles", "Lines: exact solutions at the instants of the source. Dots: discs at their depth, wherever "
-                "across the specimen they are.", [drawn("profiles", profiles(run, shown))]),
+        Section("Profiles", "Lines: exact solutions at the instants of the source. Dots: discs at their depth, "
+                "wherever across the specimen they are.", [drawn("profiles", profiles(run, shown))]),
         Section("Convergence", "Errors at the last instant over the mean diameter; the dashed line has order 2.",
                 [drawn("convergence", convergence(cases, errors))]),
         Section("Temperatures", "The discs at the last instant, coloured from the lowest to the highest temperature.",
@@ -82,7 +82,8 @@ def stage_seconds(model):
 def key_results(run, shown, errors):
     """The numbers to see first."""
     def worst(packing):
-        found = [errors[stage] for case in shown if case.packing == packing for stage in case.stages if stage in errors]
+        found = [errors[stage] for case in shown if case.packing == packing
+                 for stage in case.stages if stage in errors]
         return [max(column) for column in zip(*found)] or [np.nan, np.nan]
 
     entries = []
@@ -107,7 +108,8 @@ def error_table(run, shown, errors):
 
 def profiles(run, shown):
     """Temperature over depth, a row a benchmark, a column a packing."""
-    benchmarks, packings = (list(dict.fromkeys(getattr(case, name) for case in shown)) for name in ("benchmark", "packing"))
+    benchmarks, packings = (list(dict.fromkeys(getattr(case, name) for case in shown))
+                            for name in ("benchmark", "packing"))
     figure, axes = canvas(1.5 + 3.6 * len(packings), 3 * len(benchmarks), len(benchmarks), len(packings))
     for case in shown:
         panel = axes[benchmarks.index(case.benchmark) * len(packings) + packings.index(case.packing)]
@@ -164,8 +166,9 @@ def temperatures(run, shown):
     size = np.ptp(shown[0].positions, axis=0)
     figure, axes = canvas(10, 0.8 + len(shown) * max(1.2, 9 * size[1] / size[0]), len(shown), 1)
     for case, panel in zip(shown, axes):
-        colours = discs(panel, case.positions / 1e3, case.radii / 1e3, array=at_end(run, max(case.stages))["temperature"],
-                        cmap="inferno")  # the collection counts in mm, these benchmarks in units of their own
+        # The collection counts in mm, these benchmarks in units of their own.
+        colours = discs(panel, case.positions / 1e3, case.radii / 1e3, cmap="inferno",
+                        array=at_end(run, max(case.stages))["temperature"])
         top = (case.positions + case.radii[:, None]).max(axis=0)
         panel.set(xlim=(0, top[0]), ylim=(0, top[1]), aspect="equal", xlabel="depth",
                   title=f"{words(case.benchmark)}, {case.packing}, t = {case.stages[max(case.stages)]:g} s")
