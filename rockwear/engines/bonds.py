@@ -113,16 +113,16 @@ class Carried:
 
 
 def _lost(interaction):
-    """True if a body of the contact has been erased: a YADE interaction does not say so itself."""
-    return not O.interactions.has(interaction.id1, interaction.id2)
+    """True if a body of the contact has been erased: neither a YADE interaction nor the container of them will say so."""
+    bodies = O.bodies
+    return bodies[interaction.id1] is None or bodies[interaction.id2] is None
 
 
 def _put_wire(phys, wire):
     """Make YADE's law that of the tripwire."""
     phys.kn, phys.ks, phys.tanFrictionAngle = wire.kn, wire.kt, -wire.slope
     phys.FnMax, phys.FsMax = min(wire.Fn, UNLIMITED), min(wire.Ft, UNLIMITED)
-    # A contact that tripped before would no longer keep account of its strain energy.
-    phys.isCohesive, phys.momentBroken = True, False
+    phys.isCohesive = True
 
 
 def _strain_energy(phys):
@@ -194,7 +194,6 @@ class Bonds(Engine):
     def connect(self):
         """Find the interactions of the scene that is in O now."""
         self.functor = law_functor(Law2_ScGeom_JCFpmPhys_JointedCohesiveFrictionalPM)
-        self.functor.useStrainEnergy = True
         self.intact, self.broken = {}, {}
         for n, (i, j) in enumerate(self.pairs.tolist()):
             if self.status[n] != GONE:
@@ -270,9 +269,6 @@ class Bonds(Engine):
             # The wire lies within the strength, or where an elastic stiffness changes.
             self._rest(n, carried)
             return
-        if bond.broken:
-            # What breaks in the step of its trip sets free what it held the step before.
-            spent = phys.strainEnergy - _strain_energy(phys)
         self._book(n, carried, spent)
 
     def _rest(self, n, carried):

@@ -1,7 +1,9 @@
 """The virtual laboratory: exact moduli of a lattice, failure of a small specimen, resuming, bad input."""
+import json
 import math
 import signal
 
+import numpy as np
 import pytest
 
 from .conftest import ROOT, arguments, history, interrupt_script, run_script
@@ -100,6 +102,25 @@ def test_stopped_and_resumed_equals_never_stopped(compressed, tmp_path):
     assert resumed.summary["results"] == compressed.summary["results"]
     assert resumed.summary["audits"] == compressed.summary["audits"]
     assert (out / "history.csv").read_bytes() == (compressed.out / "history.csv").read_bytes()
+
+
+@pytest.mark.parametrize("law", ["damage", "plastic"])
+def test_softening_bonds_stopped_past_their_peak_and_resumed_equal_never_stopped(tmp_path, law):
+    options = dict(law=law, H=4e9)
+    never = laboratory(tmp_path / "never", **options)
+    assert never.code == 0 and value(never, "failed"), never.stderr
+    out = tmp_path / "out"
+    stopped = interrupt_script(SCRIPT, out, signal.SIGTERM, 6, **{**SMALL, **options, "checkpoint_interval": 0.01})
+    assert stopped.code == 128 + signal.SIGTERM
+    current = json.loads((out / "checkpoint/current.json").read_text())
+    with np.load(out / "checkpoint" / str(current["set"]) / "state.npz") as state:
+        assert len(state["engines/bonds/resting"]) > 3 and (state["engines/bonds/status"] == 0).any()
+    resumed = laboratory(out, "--resume", **options)
+    assert resumed.code == 0, resumed.stderr
+    for name in ("results", "audits"):
+        assert resumed.summary[name] == never.summary[name]
+    for file in ("history.csv", "cracks.csv"):
+        assert (out / file).read_bytes() == (never.out / file).read_bytes()
 
 
 @pytest.mark.parametrize("values, words", [

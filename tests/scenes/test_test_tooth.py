@@ -105,6 +105,15 @@ def test_killed_and_stopped_and_resumed_equals_never_stopped(cut, tmp_path):
     assert (out / "history.csv").read_bytes() == (cut.out / "history.csv").read_bytes()
 
 
+@pytest.mark.parametrize("law", ["damage", "plastic"])
+def test_a_cut_with_softening_bonds_keeps_its_books(tmp_path, law):
+    run = test_tooth(tmp_path / "out", law=law, heat="false", report="false")
+    assert run.code == 0, run.stderr
+    book, cracks = run.summary["audits"]["energy"], run.summary["results"]
+    assert cracks["tensile_cracks"]["value"] + cracks["shear_cracks"]["value"] > 20 and book["bond_breaking"] > 0
+    assert abs(book["residual"]) < 0.02 * book["tool_work"]
+
+
 def test_another_seed_is_another_rock(cut, tmp_path):
     run = test_tooth(tmp_path / "out", seed=2, **TINY)
     assert value(run, "rock_bonds") != value(cut, "rock_bonds")

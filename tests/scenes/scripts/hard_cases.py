@@ -1,0 +1,194 @@
+"""Hard cases of the bond laws in YADE; writes {check: {case: numbers}} to the file named last.
+
+A lattice of discs is torn, sheared or crushed by its own velocity; discs of a breaking lattice are erased; a bond is
+led around its peak.
+"""
+import json
+import math
+import os
+import sys
+from types import SimpleNamespace
+from unittest import mock
+
+ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(sys.argv[0])))))
+sys.path.insert(0, ROOT)
+
+import numpy as np  # noqa: E402
+from yade import O, utils  # noqa: E402
+
+from rockwear import engines, scene  # noqa: E402
+from rockwear.engines.bonds import BROKEN, GONE, INTACT, Bonds, LettingGo, RockFriction  # noqa: E402
+from rockwear.engines.motion import Foresight  # noqa: E402
+from rockwear.kernels.bond_laws import ElasticBrittle, ElasticDamage, ElastoPlasticSoftening  # noqa: E402
+from rockwear.kernels.packing import contacts  # noqa: E402
+from rockwear.two_disc import lead  # noqa: E402
+
+KN, KT, RN, RT, MU = 2e10, 1e10, 1e5, 6e4, 0.8
+SPRING = dict(kn=KN, kt=KT, mu=MU)
+LAWS = {"brittle": ElasticBrittle(Rn=RN, Rt=RT, **SPRING)}
+for name, kind in (("damage", ElasticDamage), ("plastic", ElastoPlasticSoftening)):
+    LAWS |= {name: kind(Rn=RN, Rt=RT, H=1e10, **SPRING),
+             f"{name}, nearly vertical": kind(Rn=RN, Rt=RT, H=1e4 * KN, **SPRING),
+             f"{name}, weak in shear": kind(Rn=RN, Rt=1e-3 * RN, H=1e10, **SPRING),
+             f"{name}, weak in tension": kind(Rn=1e-3 * RN, Rt=RN, H=1e10, **SPRING)}
+RADIUS, ROWS, COLUMNS = 1e-3, 8, 9
+TIME_STEP = 1e-7
+RATE = 0.2
+"""First step over the displacement of the peak: fast enough to break most of a lattice."""
+TEAR, SHEAR, CRUSH = np.diag([1.0, 1.0]), np.array([[0.0, 1.0], [0.0, 0.0]]), np.diag([-1.0, 1.0])
+
+
+def lattice():
+    """A triangular one, in the form that scene.put_rock takes."""
+    places = np.array([(2 * RADIUS * column + RADIUS * (row % 2), math.sqrt(3) * RADIUS * row)
+                       for row in range(ROWS) for column in range(COLUMNS)])
+    count = len(places)
+    masses = np.full(count, 2500 * math.pi * RADIUS**2)
+    return SimpleNamespace(count=count, positions=places, radii=np.full(count, RADIUS), masses=masses,
+                           inertias=0.5 * masses * RADIUS**2, supported=np.zeros(count, bool),
+                           pairs=contacts(places, np.full(count, RADIUS), 1e-6 * RADIUS))
+
+
+def moving_lattice(law, gradient, *first):
+    """Bonded rock with a linear field of velocity (1/s), free at its edges; engines `first` are visited before all.
+    -> its engine of bonds, and a function that gives the energy in no book (J)."""
+    O.reset()
+    rock = lattice()
+    scene.put_rock_materials(mu=law.mu)
+    scene.put_rock(rock)
+    scene.put_loop(kn=law.kn, kt=law.kt, mu=law.mu)
+    bonds = Bonds(pairs=rock.pairs, law=law, clock=lambda: O.time)
+    friction = RockFriction(bonds=bonds, motion=Foresight(masses=rock.masses, inertias=rock.inertias, radii=rock.radii,
+                                                          held=rock.supported))
+    scene.make_bonds(rock, bonds)
+    for i, (x, y) in enumerate((rock.positions - rock.positions.mean(axis=0)) @ np.transpose(gradient)):
+        O.bodies[i].state.vel = (x, y, 0.0)
+    O.dt = TIME_STEP
+    all_engines = [*first, bonds, friction, LettingGo(bonds)]
+    engines.enlist(all_engines)
+    periods = {engine.name: 50 if engine.name == "letting_go" else 1 for engine in all_engines}
+    O.engines = O.engines[:-1] + engines.runners(periods) + O.engines[-1:]
+    for engine in all_engines:
+        engine.last_iteration = O.iter - 1
+        engine.connect()
+
+    def in_no_book():
+        return (utils.kineticEnergy() + bonds.elastic_energy() + friction.elastic_energy() + bonds.energy_released
+                + friction.total)
+    return bonds, in_no_book
+
+
+def run(steps):
+    O.run(steps, True)
+    if engines.failures:
+        raise engines.failures.pop()
+
+
+def fastest():
+    return max(body.state.vel.norm() for body in O.bodies if body)
+
+
+def torn(law, gradient, rate, steps, finer=1):
+    """A lattice whose motion breaks most bonds. rate: how often the displacement of the peak fits into the first step,
+    where kn = kt and Rn = Rt; finer: in how many steps a step is divided."""
+    per_step = rate * min(law.Rn / law.kn, law.Rt / law.kt) / (2 * RADIUS)
+    bonds, energy = moving_lattice(law, per_step / TIME_STEP * gradient)
+    O.dt /= finer
+    before, speed = energy(), fastest()
+    kicks, most = [], 0
+    for _ in range(10):
+        broken = len(bonds.cracks)
+        run(max(1, finer * steps // 10))
+        most = max(most, len(bonds.cracks) - broken)
+        kicks.append(fastest() / speed)
+    return {"residual": (energy() - before) / before, "broken": len(bonds.cracks) / len(bonds.pairs),
+            "at once": most, "kick": max(kicks), "least crack": min(crack.energy for crack in bonds.cracks),
+            "finite": bool(np.isfinite([body.state.pos for body in O.bodies]).all())}
+
+
+class Eraser(engines.Engine):
+    """Erases a disc at certain steps, from within the loop and before the bonds are visited."""
+
+    name = "eraser"
+
+    def __init__(self, discs):
+        super().__init__()
+        self.discs, self.start = dict(discs), O.iter
+
+    def act(self):
+        for disc in self.discs.pop(O.iter - self.first, []):
+            O.bodies.erase(disc)
+
+    def connect(self):
+        self.first = O.iter
+
+
+def erased(law):
+    """Discs erased while their bonds soften, break, and slide; afterwards no energy is lost or found."""
+    middle = ROWS // 2 * COLUMNS
+    at = {step: [disc] for step, disc in zip(range(20, 20 * 12, 20), range(middle, middle + 11))}
+    bonds, energy = moving_lattice(law, RATE * RN / KN / (2 * RADIUS * TIME_STEP) * (SHEAR + 0.2 * TEAR), Eraser(at))
+    seen = {"carried": 0, "resting": 0, "broken": 0}
+    for step in range(240):
+        held = {name: set(getattr(bonds, name)) for name in seen}
+        discs = set(range(len(O.bodies))) - {body.id for body in O.bodies if body}
+        run(1)
+        new = {i for i in range(len(O.bodies)) if O.bodies[i] is None} - discs
+        for name in seen:
+            seen[name] += sum(bool(new & set(bonds.pairs[n])) for n in held[name])
+    # By hand, between two steps.
+    O.bodies.erase(0)
+    bonds.let_go()
+    gone = [i for i in range(len(O.bodies)) if O.bodies[i] is None]
+    touching = np.isin(bonds.pairs, gone).any(axis=1)
+    before = energy()
+    run(500)
+    return {"erased": len(gone), "seen": seen, "all gone": bool((bonds.status[touching] == GONE).all()),
+            "others alive": int((bonds.status[~touching] == INTACT).sum()), "cracks": len(bonds.cracks),
+            "broken": int((bonds.status == BROKEN).sum()), "residual": (energy() - before) / before,
+            "left over": sum(n in group for n in np.flatnonzero(touching) for group in
+                             (bonds.intact, bonds.carried, bonds.resting, bonds.broken))}
+
+
+def cycled(law, seed=4, legs=60):
+    """A bond led to and fro around its peak: deviation from the law, and how often YADE's law took it back."""
+    rng = np.random.default_rng(seed)
+    rests = [0]
+    rest = Bonds._rest
+
+    def counting(self, n, carried):
+        rests[0] += 1
+        rest(self, n, carried)
+
+    corners = rng.uniform([-0.3, -1.5], [1.0, 1.5], (legs, 2)) * np.linspace(0.6, 1.6, legs)[:, None]
+    corners = np.vstack([[0.0, 0.0], corners]) * [law.Rn / law.kn, law.Rt / law.kt]
+    path = np.vstack([a + (b - a) * np.linspace(0, 1, 30, endpoint=False)[:, None]
+                      for a, b in zip(corners, corners[1:])])
+    with mock.patch.object(Bonds, "_rest", counting):
+        response = lead(law, *path.T, radii=(1e-3, 1.6e-3))
+    Fn, Ft = law.drive(response.un, response.ut[:, 0])
+    deviation = max(abs(Fn - response.Fn).max(), abs(Ft - response.Ft[:, 0]).max()) / max(law.Rn, law.Rt)
+    return {"deviation": float(deviation), "rests": rests[0]}
+
+
+def cycled_without_new_normals():
+    """The same, the engine broken on purpose: after a rest the shear force is found as if nothing had slipped."""
+    with mock.patch.object(Bonds, "_bond_anew", lambda self, n, carried: None):
+        return cycled(LAWS["plastic"])["deviation"]
+
+
+THREE = ["brittle", "damage", "plastic"]
+checks = {
+    "torn in one step": {name: torn(law, TEAR, 3e4, 10) for name, law in LAWS.items()},
+    "torn in a few steps": {name: torn(law, TEAR, 1.0, 40) for name, law in LAWS.items()},
+    "sheared": {name: torn(law, SHEAR, RATE, 300) for name, law in LAWS.items()},
+    "crushed": {name: torn(law, CRUSH, RATE, 300) for name, law in LAWS.items()},
+    "crushed in finer steps": {name: torn(LAWS[name], CRUSH, RATE, 100, finer=8) for name in THREE},
+    "erased": {name: erased(LAWS[name]) for name in THREE},
+    "cycled": {name: cycled(law) for name, law in LAWS.items()},
+    "cycled without new normals": cycled_without_new_normals(),
+}
+with open(sys.argv[-1], "w") as file:
+    json.dump(checks, file, indent=1)
+sys.stdout.flush()
+os._exit(0)

@@ -1,0 +1,60 @@
+"""Hard cases of the bond laws in YADE: many bonds gone in one step, discs erased while their bonds break, cycles around
+the peak."""
+import json
+
+import pytest
+
+from .conftest import ROOT, run_script
+
+
+@pytest.fixture(scope="module")
+def checks(tmp_path_factory):
+    """All checks, made in one process of YADE."""
+    file = tmp_path_factory.mktemp("hard_cases") / "checks.json"
+    done = run_script(ROOT / "tests/scenes/scripts/hard_cases.py", str(file))
+    assert done.code == 0, done.stderr
+    return json.loads(file.read_text())
+
+
+@pytest.mark.parametrize("kind", ["torn in one step", "torn in a few steps", "sheared", "crushed"])
+def test_many_bonds_broken_at_once_give_no_kick_and_no_nan(checks, kind):
+    assert len(checks[kind]) == 9
+    for found in checks[kind].values():
+        assert found["finite"] and found["broken"] > 0.2 and found["at once"] > 5
+        assert found["kick"] < (1 + 1e-9 if kind == "torn in one step" else 1.1)
+
+
+def test_torn_in_one_step_everything_is_gone(checks):
+    for found in checks["torn in one step"].values():
+        assert found["broken"] == 1.0 and abs(found["residual"]) < 1e-12
+
+
+def test_the_energy_book_closes_where_all_bonds_break_within_a_few_steps(checks):
+    for law, found in checks["torn in a few steps"].items():
+        assert abs(found["residual"]) < (0.01 if law.endswith("weak in shear") else 1e-8)
+
+
+def test_the_energy_book_closes_where_fragments_press_and_slide(checks):
+    """What is left is the order of the step: contacts that close and open, friction that is sampled."""
+    for kind in ("sheared", "crushed"):
+        assert max(abs(found["residual"]) for found in checks[kind].values()) < 0.03
+    assert max(abs(found["residual"]) for found in checks["crushed in finer steps"].values()) < 0.004
+
+
+def test_no_crack_gives_energy_away(checks):
+    for kind in ("torn in a few steps", "sheared", "crushed"):
+        assert min(found["least crack"] for found in checks[kind].values()) > -1e-12
+
+
+def test_discs_erased_while_their_bonds_soften_and_break(checks):
+    for law, found in checks["erased"].items():
+        assert found["erased"] == 12 and found["all gone"] and found["left over"] == 0
+        assert found["seen"]["broken"] > 0 and abs(found["residual"]) < 2e-3
+        if law != "brittle":
+            assert found["seen"]["carried"] > 0 and found["seen"]["resting"] > 0 and found["others alive"] > 20
+
+
+def test_a_bond_cycled_around_its_peak_follows_its_law(checks):
+    assert max(found["deviation"] for found in checks["cycled"].values()) < 1e-13
+    assert checks["cycled"]["damage"]["rests"] > 50 and checks["cycled"]["plastic"]["rests"] > 5
+    assert checks["cycled without new normals"] > 0.01
