@@ -106,15 +106,17 @@ def test_stopped_and_resumed_equals_never_stopped(compressed, tmp_path):
 
 @pytest.mark.parametrize("law", ["damage", "plastic"])
 def test_softening_bonds_stopped_past_their_peak_and_resumed_equal_never_stopped(tmp_path, law):
-    options = dict(law=law, H=4e9)
+    """Ten thousand steps, of which the last three thousand lie past the peak of the specimen, too."""
+    options = dict(law=law, H=1e9, speed=0.05, strain_max=0.01, drop=0)
     never = laboratory(tmp_path / "never", **options)
-    assert never.code == 0 and value(never, "failed"), never.stderr
+    assert never.code == 0, never.stderr
     out = tmp_path / "out"
-    stopped = interrupt_script(SCRIPT, out, signal.SIGTERM, 6, **{**SMALL, **options, "checkpoint_interval": 0.01})
+    stopped = interrupt_script(SCRIPT, out, signal.SIGTERM, 3, **{**SMALL, **options, "checkpoint_interval": 0.01})
     assert stopped.code == 128 + signal.SIGTERM
     current = json.loads((out / "checkpoint/current.json").read_text())
     with np.load(out / "checkpoint" / str(current["set"]) / "state.npz") as state:
-        assert len(state["engines/bonds/resting"]) > 3 and (state["engines/bonds/status"] == 0).any()
+        softened = [len(state[f"scene/engines/bonds/{group}"]) for group in ("carried", "resting")]
+        assert sum(softened) > 3
     resumed = laboratory(out, "--resume", **options)
     assert resumed.code == 0, resumed.stderr
     for name in ("results", "audits"):
