@@ -111,7 +111,7 @@ def test_softening_bonds_stopped_past_their_peak_and_resumed_equal_never_stopped
     never = laboratory(tmp_path / "never", **options)
     assert never.code == 0, never.stderr
     out = tmp_path / "out"
-    stopped = interrupt_script(SCRIPT, out, signal.SIGTERM, 3, **{**SMALL, **options, "checkpoint_interval": 0.01})
+    stopped = interrupt_script(SCRIPT, out, signal.SIGTERM, 4, **{**SMALL, **options, "checkpoint_interval": 0.01})
     assert stopped.code == 128 + signal.SIGTERM
     current = json.loads((out / "checkpoint/current.json").read_text())
     with np.load(out / "checkpoint" / str(current["set"]) / "state.npz") as state:
