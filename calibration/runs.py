@@ -40,6 +40,8 @@ class Runs:
         if self.keep and finished(folder, values):
             return RunFolder(folder)
         words = [word for name, value in values.items() for word in (f"--{name}", str(value))]
+        if self.keep and (folder / "checkpoint").exists() and not (folder / "summary.json").exists():
+            words.append("--resume")
         done = subprocess.run(["yade", "-n", "-x", "-j1", str(ROOT / script), "--out", str(folder), *words],
                               capture_output=True, text=True, stdin=subprocess.DEVNULL)
         if done.returncode:

@@ -71,7 +71,8 @@ def trusted_acceleration(*, acceleration, error, events, tolerance):
     and a particle goes in events f / f' contacts. -> f min((tolerance / error)^2, events / ENOUGH_EVENTS); nan where
     the record says nothing.
     """
-    return acceleration * float(np.minimum((tolerance / np.float64(error)) ** 2, events / ENOUGH_EVENTS))
+    with np.errstate(divide="ignore"):
+        return acceleration * float(np.minimum((tolerance / np.float64(error)) ** 2, events / ENOUGH_EVENTS))
 
 
 def difference(first, second):

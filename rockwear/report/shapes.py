@@ -81,10 +81,15 @@ def distance_to(points, polygons, spacing):
     return cKDTree(np.vstack([contour(polygon, spacing)[0] for polygon in polygons])).query(points)[0]
 
 
+def pieces(count, pairs, intact):
+    """(n,) number of the piece that each disc belongs to by intact bonds."""
+    i, j = pairs[intact].T
+    return connected_components(coo_matrix((np.ones(len(i)), (i, j)), shape=(count, count)), directed=False)[1]
+
+
 def chips(count, pairs, intact, held):
     """(n,) bool: discs that no chain of intact bonds joins to a held one (to the largest part, if none is held)."""
-    i, j = pairs[intact].T
-    label = connected_components(coo_matrix((np.ones(len(i)), (i, j)), shape=(count, count)), directed=False)[1]
+    label = pieces(count, pairs, intact)
     anchors = label[held] if np.any(held) else [np.argmax(np.bincount(label))]
     return ~np.isin(label, anchors)
 

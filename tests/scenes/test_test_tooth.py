@@ -216,3 +216,32 @@ def test_history_has_units_and_rises_in_time(cut):
     assert all("[" in name for name in columns)
     assert np.all(np.diff(columns["time [s]"]) > 0)
     assert np.all(np.diff(columns["mass_lost [-]"]) >= 0)
+
+
+def test_depth_of_cut_counts_from_the_tip_wherever_the_outline_lies(tmp_path):
+    # Binary fractions, so that the shift leaves no trace in the last digit.
+    corners = np.array([[0, 0], [5, 0], [5, 8], [0, 8]]) / 256
+    works = []
+    for shift in (0.0, 0.125):
+        file = tmp_path / f"{shift}.csv"
+        np.savetxt(file, corners + [0.0, shift], delimiter=",")
+        run = test_tooth(tmp_path / str(shift), outline=file, **{**TINY, "start_up": 6e-4})
+        works.append(run.summary["audits"]["energy"]["tool_work"])
+    assert works[0] > 0 and works[1] == works[0]
+
+
+def test_wear_can_be_booked_without_any_change_of_shape(tmp_path):
+    run = test_tooth(tmp_path / "out", removal="none", acceleration=1e6, **{**TINY, "start_up": 6e-4})
+    book = run.summary["audits"]["mass"]
+    assert value(run, "particles_removed") == 0 and book["archard"] > 0
+    assert book["stored"] == pytest.approx(book["archard"], rel=1e-12)
+
+
+def test_accelerated_wear_says_how_far_to_trust_it(cut):
+    """The run's own statistics, put together from what it left in its folder."""
+    lines = (cut.out / "wear_profile.csv").read_text().splitlines()
+    increments = np.array([[float(cell) for cell in line.split(",")] for line in lines[1:]])
+    assert increments.sum() == pytest.approx(value(cut, "worn_volume"), rel=1e-9)
+    assert value(cut, "wear_distribution_error") > 0.05
+    assert value(cut, "trusted_acceleration") < 7000
+    assert len(cut.summary["warnings"]) == 1 and "accelerate it at most" in cut.stderr

@@ -1,0 +1,134 @@
+"""Wear of whole tools over many cycles: M's test tooth and ripper in full, one page.
+
+    python3 -m calibration.campaign_wear DIR            (make campaign-wear)
+
+Two runs at a time, a folder a run. A campaign that was stopped goes on: finished runs stay, the others resume from their
+checkpoints. The last part cuts fresh rock with the shapes that the test tooth passed through (calibration.sharp_and_worn).
+"""
+import sys
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+
+from calibration import sharp_and_worn
+from calibration.runs import Runs
+from rockwear.kernels.wear_statistics import PLACE, difference
+from rockwear.report import page, plots
+from rockwear.report.folder import read_history
+
+TOOTH, RIPPER = "yade_scripts/test_tooth.py", "yade_scripts/ripper.py"
+FEW_PICTURES = dict(snapshot_period=0.0035, checkpoint_interval=300)
+LONG = dict(FEW_PICTURES, cycles=28, hardness_temperature=293.15, heat="false")
+"""0.201 s as in M 9.2, constant hardness."""
+CASES = {
+    "test tooth, 2e5": (TOOTH, dict(LONG, acceleration=2e5)),
+    "ripper, 2e5": (RIPPER, dict(FEW_PICTURES, acceleration=2e5)),
+    "test tooth, 4e5": (TOOTH, dict(LONG, acceleration=4e5, cycles=14)),
+    "test tooth, 8e5": (TOOTH, dict(LONG, acceleration=8e5, cycles=7)),
+    "test tooth, 2e5, twice as deep": (TOOTH, dict(LONG, acceleration=2e5, depth_of_cut=0.016)),
+    "test tooth, 7000": (TOOTH, dict(LONG, acceleration=7000)),
+    "ripper, 7000": (RIPPER, dict(FEW_PICTURES)),
+}
+WORN = "test tooth, 2e5"
+"""The run whose shapes are compared."""
+SAME_WORK = "test tooth, 2e5", "test tooth, 4e5", "test tooth, 8e5"
+"""R's first rule: wear twice as fast and half as long, and that again."""
+COARSE = dict(coarsening=3)
+"""Rock graded threefold below the reach of the cut: half the time."""
+OF_M = 0.203, 40.0
+"""Seconds and per cent of the mass lost, M 9.2."""
+
+
+def profile(run):
+    """(b,) m3 worn at each place along the first outline."""
+    return np.sum(list(read_history(run.path / "wear_profile.csv")[0].values()), axis=1)
+
+
+def acceleration(runs):
+    """Wear of the same work done at several accelerations: distributions, and how far each is from the slowest one.
+
+    Beside it stands what each run says of its own error: the difference of two runs is due to both.
+    """
+    runs = {name: runs[name] for name in SAME_WORK}
+    factors = np.array([run.parameter("acceleration", 1.0) for run in runs.values()])
+    errors = np.array([run.result("wear_distribution_error") for run in runs.values()])
+    worn = [profile(run) for run in runs.values()]
+    found = [100 * difference(share, worn[0]) for share in worn[1:]]
+    figure, (along, against) = plots.canvas(12, 4.4, 1, 2)
+    for name, share in zip(runs, worn):
+        along.step(plots.MM * PLACE * np.arange(len(share)), 100 * share / share.sum(), where="mid",
+                   label=f"{name}: {1e6 * share.sum():.3g} mm² worn")
+    along.set(xlabel="way along the new outline / mm", ylabel="% of the worn volume")
+    along.legend(fontsize=8)
+    against.loglog(factors[1:], found, "o", color="#b5651d", label="difference from the slowest run")
+    against.loglog(factors[1:], 100 * np.hypot(errors[1:], errors[0]), "s-", color="#2c6e91",
+                   label="expected from both runs' own records")
+    against.set(xlabel="acceleration, at the same work", ylabel="difference of the distributions / %")
+    against.legend(fontsize=8)
+    return figure
+
+
+def mass_loss(runs):
+    """Mass lost against simulated time, and against working hours."""
+    figure, (raw, scaled) = plots.canvas(12, 4.4, 1, 2)
+    for name, run in runs.items():
+        time, whole = run.column("time"), run.model["tool_volumes"].sum()
+        worn = 100 * run.column("worn_volume") / whole
+        line, = raw.plot(plots.MS * time, worn, label=name)
+        hours = time * run.parameter("acceleration", 1.0) / 3600
+        scaled.loglog(hours[worn > 0], worn[worn > 0], color=line.get_color())
+    raw.plot(plots.MS * OF_M[0], OF_M[1], "k*", markersize=12, label="M 9.2, k × 7000")
+    scaled.plot(OF_M[0] * 7000 / 3600, OF_M[1], "k*", markersize=12)
+    raw.set(xlabel="simulated time / ms", ylabel="worn off / % of the tool", yscale="log", ylim=(1e-2, 100))
+    scaled.set(xlabel="working time (time × acceleration) / h", ylabel="worn off / % of the tool", ylim=(1e-2, 100))
+    raw.legend(fontsize=8)
+    return figure
+
+
+def wear_table(runs):
+    """A line a run: how much, how fast, and how far to believe it."""
+    rows = []
+    for name, run in runs.items():
+        hours = run.result("simulated_time") * run.parameter("acceleration", 1.0) / 3600
+        lost = 100 * run.result("worn_volume") / run.model["tool_volumes"].sum()
+        friction = run.summary["audits"]["friction"]["tool"]
+        rows.append((name, page.quantity(run.result("simulated_time"), "s"), f"{hours:.2f} h", f"{lost:.3g} %",
+                     f"{lost / hours:.2g} %/h", page.quantity(run.result("mean_cutting_force"), "N/m"),
+                     page.percent(friction, run.summary["audits"]["energy"]["tool_work"]),
+                     page.percent(run.result("wear_distribution_error"), 1.0),
+                     page.number(run.result("trusted_acceleration")),
+                     page.percent(run.summary["audits"]["mass"]["unexplained"], run.summary["audits"]["mass"]["archard"])))
+    return page.table(rows, ("run", "simulated", "stands for", "worn off", "rate", "mean cutting force", "friction, of the work",
+                             "error of the distribution", "trusted acceleration", "wear against Archard's volume"))
+
+
+def main(folder):
+    """Run what is missing, and write the page."""
+    folder = Path(folder)
+    with Runs(folder, keep=True) as runs:
+        waiting = {name: runs.start(name.replace(", ", "-").replace(" ", "_"), script, **{**COARSE, **values})
+                   for name, (script, values) in CASES.items()}
+        found = {name: future.result() for name, future in waiting.items()}
+    with matplotlib.rc_context(plots.STYLE):
+        mass_loss(found).savefig(folder / "mass_loss.png")
+        acceleration(found).savefig(folder / "acceleration.png")
+    sections = [page.Section("How fast the tools wear", "Left as simulated, right over the time that the accelerated wear "
+                             "stands for: equal rates fall on one line. The star is M's test tooth.",
+                             [page.image(folder / "mass_loss.png"), wear_table(found)]),
+                page.Section("Does acceleration change the wear?", "R: the same work at other factors must wear alike.",
+                             [page.image(folder / "acceleration.png")])]
+    for name, run in found.items():
+        pieces = [page.image(run.path / "figures" / f"{figure}.png") for figure in ("shape", "wear", "trust")
+                  if (run.path / "figures" / f"{figure}.png").exists()]
+        sections.append(page.Section(name, "", pieces))
+    sharp_and_worn.main(found[WORN].path, folder / "sharp_and_worn")
+    sections.append(page.Section("Sharp and worn", "The same rock cut by the tooth as it was new and as it wore; see "
+                                 "sharp_and_worn/report.html.", [page.image(folder / "sharp_and_worn/sharp_and_worn.png")]))
+    (folder / "report.html").write_text(page.document("wear", f"{len(found)} runs", sections), encoding="utf-8")
+    print(folder / "report.html")
+
+
+if __name__ == "__main__":
+    matplotlib.use("Agg")
+    main(sys.argv[1])
