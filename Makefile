@@ -6,10 +6,10 @@ SUDO     := $(if $(filter 0,$(shell id -u)),,sudo)
 TOOTH    := yade -n -x -j1 yade_scripts/test_tooth.py
 
 .DEFAULT_GOAL := help
-.PHONY: help setup run test validate bench campaigns lint clean
+.PHONY: help setup run test validate bench campaigns campaign-wear campaign-uniaxial lint clean
 
 help: ## list the targets
-	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "make %-10s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "make %-18s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
 
 setup: ## install what is missing (Debian packages), check that YADE runs
 	@if command -v dpkg-query >/dev/null && command -v apt-get >/dev/null; then \
@@ -44,6 +44,12 @@ bench: setup ## speed against error; figures and numbers in out/bench
 campaigns: setup ## a sweep of the test tooth over seeds, two jobs at a time
 	mkdir -p $(OUT)/campaign
 	yade-batch -j2 --job-threads=1 --log=$(OUT)/campaign/@.log yade_scripts/test_tooth.seeds.table yade_scripts/test_tooth.py
+
+campaign-wear: setup ## test tooth and ripper worn over many cycles, sharp and worn compared (an hour; goes on when stopped)
+	$(PYTHON) -m calibration.campaign_wear $(OUT)/campaign-wear
+
+campaign-uniaxial: setup ## the laboratory's laws, slopes of softening and micro-parameters (hours; goes on when stopped)
+	$(PYTHON) -m calibration.campaign_uniaxial $(OUT)/campaign-uniaxial
 
 lint: setup ## unused names and the like
 	$(PYTHON) -m pyflakes rockwear calibration yade_scripts tests

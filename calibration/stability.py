@@ -13,6 +13,7 @@ import matplotlib
 import numpy as np
 
 from calibration.runs import Runs
+from calibration.verdicts import Row, Section
 from rockwear.kernels.stability import critical_time_step
 from rockwear.report import page, plots
 from rockwear.rock import Specimen
@@ -134,6 +135,16 @@ def large():
                            bonds=rock.pairs, kn=20e9, kt=kt, ratcheting_free=True)
         times.append((kt / 20e9, time.process_time() - began))
     return times, rock.count, len(rock.pairs)
+
+
+def judge(runs):
+    """Bounded at 0.98, blown up at 1.05, and YADE's own limit, in every case."""
+    cases = runs["stability"].summary["cases"]
+    return [Row(*row) for row in rows(cases)], {"stability": figure(cases)}
+
+
+SECTIONS = [Section("Critical time step", "Hard cases on either side of the critical step, beside what YADE's own "
+                    "estimators would have allowed.", judge, {"stability": (SCRIPT, {"bisect": "true"})})]
 
 
 def main(folder):

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import matplotlib
 
-from calibration import heat, uniaxial_validation, wear_validation
+from calibration import heat, stability, uniaxial_validation, wear_validation
 from calibration.runs import RunFailed, Runs
 from calibration.verdicts import Row, Section
 from rockwear.report import page, plots
@@ -49,6 +49,7 @@ SECTIONS = [
             {"two_discs": ("yade_scripts/two_disc.py", {})}),
     Section("Books of the test tooth", "Energy to 1 %; heat, wear and friction to round-off.", tooth,
             {f"tooth_{seed}": ("yade_scripts/test_tooth.py", {"seed": seed, "coarsening": 3}) for seed in SEEDS}),
+    *stability.SECTIONS,
     *uniaxial_validation.SECTIONS,
     *wear_validation.SECTIONS,
     *heat.SECTIONS,
