@@ -153,9 +153,7 @@ class Cutting(scene.Scene):
                 f"at least tool_radius_min = {v.tool_radius_min:g}", "m")
         require(v.tool_radius_max <= v.radius_min, "tool_radius_max", v.tool_radius_max,
                 f"at most the rock's radius_min = {v.radius_min:g}: a smooth tool needs finer particles (M 6.5)", "m")
-        require(2 * v.radius_max < v.depth_of_cut < v.height, "depth_of_cut", v.depth_of_cut,
-                f"more than a rock particle, {2 * v.radius_max:g}, and less than the specimen's height {v.height:g}", "m")
-        self._check_travel(v)
+        self._check_cut(v)
         self.hardness = self._hardness(v)
         self.wear_law = wear_law(v.wear_law, k=v.wear_coefficient, mu=v.tool_mu, exponent=v.wear_exponent,
                                  modes=v.wear_modes).scaled(v.acceleration)
@@ -170,23 +168,20 @@ class Cutting(scene.Scene):
         vertices = vertices - [0.0, vertices[:, 1].min()]
         self._check_size(v, vertices)
         self.law = linear_law(v.law, kn=v.kn, kt=v.kt, Rn=v.Rn, Rt=v.Rt, H=v.H, mu=v.mu)
-        self.rock = Specimen(width=v.width, height=v.height, radius_min=v.radius_min, radius_max=v.radius_max,
-                             porosity=v.porosity, seed=v.seed, bonding_gap=v.bonding_gap, coarsening=v.coarsening,
-                             fine_depth=v.fine_depth, density=v.rock_density)
-        # The specimen stands for a part of a rock mass: its sides are held where no chip can reach them.
-        self.rock.support("bottom")
-        self.rock.support("left", "right", below=v.height - 3 * v.depth_of_cut)
+        self.rock = self._specimen(v)
         self.tool = Tool(vertices=vertices, radius_min=v.tool_radius_min, radius_max=v.tool_radius_max, seed=v.seed,
                          removal=v.removal, material=self.tool_material)
         self.motion = self._motion(v)
         self._choose_time_step(v)
-        self._plan({"start-up": v.start_up, **{f"cycle {n + 1}": v.cycle_time for n in range(v.cycles)}})
+        self._plan(self._stages(v))
         self.book = {"kinetic": 0.0, "elastic": 0.0, "contact_elastic": 0.0}
         self.cracks_of_past_cycles = []
 
     # ---- parameters
 
-    def _check_travel(self, v):
+    def _check_cut(self, v):
+        require(2 * v.radius_max < v.depth_of_cut < v.height, "depth_of_cut", v.depth_of_cut,
+                f"more than a rock particle, {2 * v.radius_max:g}, and less than the specimen's height {v.height:g}", "m")
         travel = (v.start_up + (v.cycle_time if v.cycles else 0.0)) * v.velocity
         require(travel <= v.width, "cycle_time", v.cycle_time,
                 f"so short that the tool's travel, {travel:g} m at {v.velocity:g} m/s with the start-up, stays within the "
@@ -211,6 +206,18 @@ class Cutting(scene.Scene):
                     f"inside the hardness table of {v.steel}, {low:g} to {high:g}, or -1 for the tool's own", "K")
             return Hardness.constant(table(v.hardness_temperature))
         return Hardness(table.kelvin - KELVIN, table.pascal / BRINELL)
+
+    def _specimen(self, v):
+        rock = Specimen(width=v.width, height=v.height, radius_min=v.radius_min, radius_max=v.radius_max,
+                        porosity=v.porosity, seed=v.seed, bonding_gap=v.bonding_gap, coarsening=v.coarsening,
+                        fine_depth=v.fine_depth, density=v.rock_density)
+        # The specimen stands for a part of a rock mass: its sides are held where no chip can reach them.
+        rock.support("bottom")
+        rock.support("left", "right", below=v.height - 3 * v.depth_of_cut)
+        return rock
+
+    def _stages(self, v):
+        return {"start-up": v.start_up, **{f"cycle {n + 1}": v.cycle_time for n in range(v.cycles)}}
 
     def _motion(self, v):
         x = -v.approach - self.tool.foremost(below=v.depth_of_cut + 2 * v.radius_max)
@@ -278,7 +285,7 @@ class Cutting(scene.Scene):
         self.expansion = self._expansion() if v.heat and v.rock_expansion else None
         self.damping = BackgroundDamping(rate=v.background_damping, bodies=range(rock.count)) if v.background_damping else None
         self.recorder = Recorder([self._log, self.wear.log, self.bonds.log] + ([self.heat.log] if self.heat else []))
-        kick = 0.5 * float(rock.masses.max()) * (v.velocity * v.speed_up)**2
+        kick = 0.5 * float(rock.masses.max()) * float(np.sum(self.motion.velocity(0.0)**2))
         self.watch = Watch(work=lambda: self.contact.work_done, floor=50 * kick)
         self._enlist(self.bonds, self.contact, self.rock_friction, LettingGo(self.bonds), guide, self.wear,
                      self.profile, self.heat, self.expansion, self.damping, self.recorder, self.watch)
@@ -361,6 +368,10 @@ class Cutting(scene.Scene):
         for name, value in stored.items():
             self.book[name] += value - self.base[name]
         super().end_stage(folder)
+        self._begin_stage(folder)
+        self.base = self._stored_energy()
+
+    def _begin_stage(self, folder):
         if self.stage == 1:
             self.canonical()
             O.save(str(folder / "start_up.yade.gz"))
@@ -369,7 +380,6 @@ class Cutting(scene.Scene):
                 self.start["rock_temperature"] = self.heat.network.temperature[:self.rock.count].copy()
         elif not self.finished:
             self._put_back(folder)
-        self.base = self._stored_energy()
 
     def _put_back(self, folder):
         """The rock of the start-up's end, and in it the tool as it is worn now (M 9.1)."""
@@ -500,16 +510,20 @@ class Cutting(scene.Scene):
             words.append(f"hottest {self.heat.log()['tool_temperature_max'][0] - KELVIN:.0f} C")
         return ", ".join(words)
 
+    def _cut_area(self):
+        """Area (m2) of the rock that the tool has gone through."""
+        return self.v.depth_of_cut * self.v.velocity * self.time
+
     def results(self):
         """{name: (value, unit)} of the run."""
-        v, columns = self.v, self.recorder.columns()
+        columns = self.recorder.columns()
         cutting = columns.get("cutting_force", np.zeros(1))
-        travel = self.time * v.velocity
+        area = self._cut_area()
         found = {"simulated_time": (self.time, "s"), "time_step": (self.time_step, "s"),
                  "critical_time_step": (self.critical_step, "s"), "bonded_critical_time_step": (self.bonded_step, "s"),
                  "mean_cutting_force": (float(cutting.mean()), "N/m"), "peak_cutting_force": (float(cutting.max()), "N/m"),
                  "mean_thrust_force": (float(columns.get("thrust_force", np.zeros(1)).mean()), "N/m"),
-                 "specific_energy": (self.contact.work_done / (v.depth_of_cut * travel) if travel else 0.0, "J/m3"),
+                 "specific_energy": (self.contact.work_done / area if area else 0.0, "J/m3"),
                  "mass_lost": (self.tool.erosion.mass_fraction_lost, "-"),
                  "worn_volume": (self.tool.erosion.archard_volume, "m3/m"),
                  "particles_removed": (int(np.sum(~self.tool.erosion.alive)), "-"),

@@ -7,8 +7,10 @@ from functools import cached_property
 from pathlib import Path
 
 import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
 
-from .kernels import packing
+from .kernels import outline, packing
 from .kernels.cells import cells
 from .kernels.checks import ParameterError, not_negative, positive, require, within
 
@@ -138,6 +140,32 @@ class Specimen:
         from yade import Subdomain
         values = np.fromiter(Subdomain().getStateValuesFromIds(list(range(self.count))), float)
         return values.reshape(self.count, 13)[:, :2]
+
+
+class CutOut(Specimen):
+    """The part of a specimen whose particles have their centres inside a polygon (k, 2) m, without what hangs loose there.
+
+    whole: positions and radii of the specimen that it was cut out of; the others as in Specimen.
+    """
+
+    def __init__(self, *, polygon, bonding_gap, **of_the_box):
+        super().__init__(bonding_gap=bonding_gap, **of_the_box)
+        self.polygon, self.whole = np.asarray(polygon, float), (self.positions, self.radii)
+        kept = np.flatnonzero(outline.inside(self.positions, self.polygon))
+        pairs = packing.contacts(self.positions[kept], self.radii[kept], bonding_gap)
+        joined = coo_matrix((np.ones(len(pairs)), pairs.T), shape=(len(kept), len(kept)))
+        part = connected_components(joined, directed=False)[1]
+        kept = kept[part == np.argmax(np.bincount(part))]
+        for name in ("positions", "radii", "scale", "masses", "inertias", "supported"):
+            setattr(self, name, getattr(self, name)[kept])
+        self.count = len(kept)
+        self.pairs = packing.contacts(self.positions, self.radii, bonding_gap)
+        self.strength_factor = self.scale[self.pairs].mean(axis=1)
+
+    @cached_property
+    def cells(self):
+        """kernels.cells.Cells: the part of the polygon that each particle stands for."""
+        return cells(self.positions, polygon=self.polygon)
 
 
 class Arranged(Specimen):

@@ -35,7 +35,8 @@ def main(name, declared, make_scene):
     Exit code 0: done; 2: a parameter, a folder or a checkpoint that cannot be used, said in one line before the first
     step; 1: the run ended badly, said in one line, the last checkpoint kept; 128 + n: stopped by signal n, resumable.
     """
-    declared = [*declared, *COMMON]
+    names = {parameter.name for parameter in declared}
+    declared = [*declared, *(parameter for parameter in COMMON if parameter.name not in names)]
     if "--help" in sys.argv:
         print(f"yade -n -x {sys.argv[0]} [--name value ...]")
         parameters.describe(declared)
@@ -105,7 +106,7 @@ class Run:
         else:
             for old in ("snapshots", "checkpoint", "figures", "vtk"):
                 shutil.rmtree(self.folder / old, ignore_errors=True)
-            for old in ("summary.json", "history.csv", "cracks.csv", "report.html"):
+            for old in ("summary.json", "history.csv", "cracks.csv", "turns.csv", "report.html"):
                 (self.folder / old).unlink(missing_ok=True)
             (self.folder / "snapshots").mkdir()
             self.scene.build()

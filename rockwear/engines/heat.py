@@ -81,6 +81,18 @@ class Heat(Engine):
             if self.clock - self.surface_time >= self.surface_period:
                 self.find_surfaces()
 
+    def leave_rock(self):
+        """Nothing touches the tool any more: all of its surface is free."""
+        self.exchanged_with = {}
+        if self.conduction:
+            self.find_surfaces()
+
+    def cool(self, seconds):
+        """Heat alone, for so many seconds of the process in which the mechanics stand still."""
+        self.clock += seconds
+        if self.conduction:
+            self.network.advance(seconds)
+
     def _sources(self):
         tool_work, rock_work, touching = self.tool_contact.take_heating()
         rock = (1 - self.tool_share) * rock_work + self.rock_friction.take_work()

@@ -253,12 +253,12 @@ def cut(run):
     return figure
 
 
-def moving_picture(run):
-    """The cut as an animated GIF of at most 40 frames. -> html"""
-    shown = spread(range(len(run.times)), 40)
+def moving_picture(run, title=moment, limits=None, shown=None):
+    """The cut as an animated GIF of at most 40 frames, of some or all snapshots. -> html"""
+    shown = spread(range(len(run.times)) if shown is None else shown, 40)
     if len(shown) < 2:
         return ""
-    limits = cut_view(run)
+    limits = limits or cut_view(run)
     figure, (axes,) = canvas(7.2, 0.7 + 6.4 * (limits[3] - limits[2]) / (limits[1] - limits[0]))
     picture = CutPicture(run, axes, run.snapshot(shown[0]), linewidths=0, antialiaseds=False)
     path = run.path / "figures" / "cut.gif"
@@ -266,7 +266,7 @@ def moving_picture(run):
     with writer.saving(figure, path, dpi=80):
         for k in shown:
             picture.show(run.snapshot(k))
-            frame(axes, limits, moment(run, k))
+            frame(axes, limits, title(run, k))
             writer.grab_frame()
     return image(path)
 
@@ -355,19 +355,25 @@ def wear(run):
 
 def shape(run):
     """Outline at the end of each stage over the new one, and worn depth along the contour."""
-    model, ends = run.model, spread(run.stage_ends().items(), 8)
+    ends = spread(run.stage_ends().values(), 8)
+    return worn_outlines(run, {f"after {stage_name(stage_of(run, k))}": k for k in ends})
+
+
+def worn_outlines(run, shown):
+    """Outline of the tool over the new one, and worn depth along the contour; shown: {label: snapshot}."""
+    model = run.model
     points, arc = contour(model["outline"], SPACING)
     rough = shapes.distance_to(points, shapes.outlines(model["tool_positions"], model["tool_radii"]), SPACING)
     deepest = np.zeros(len(arc))
     figure, (axes, profile) = canvas(12, 5.6, 1, 2)
     axes.fill(*MM * model["outline"].T, facecolor="#eef0f1", edgecolor="black", linewidth=1, linestyle="--", )
-    for (_, k), colour in zip(ends, colormaps["plasma"](np.linspace(0, 0.85, len(ends)))):
+    for (label, k), colour in zip(shown.items(), colormaps["plasma"](np.linspace(0, 0.85, len(shown)))):
         shot = run.snapshot(k)
         loops = tool_outlines(run, shot)
         for loop in loops:
             axes.plot(*MM * np.vstack([loop, loop[:1]]).T, color=colour, linewidth=1.4)
         depth = np.maximum(shapes.distance_to(points, loops, SPACING) - rough, 0)
-        profile.plot(MM * arc, MM * depth, color=colour, linewidth=1.4, label=f"after {stage_name(stage_of(run, k))}")
+        profile.plot(MM * arc, MM * depth, color=colour, linewidth=1.4, label=label)
         deepest = np.fmax(deepest, depth)
     worn = np.append(MM * arc[deepest > 0.02 * deepest.max()], [-5, 5])
     profile.set(xlim=(worn.min() - 2, worn.max() + 2), ylim=(0, max(0.1, 1.1 * MM * deepest.max())),

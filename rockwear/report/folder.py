@@ -43,6 +43,11 @@ class RunFolder:
         """Value of a parameter."""
         return self.parameters.get(name, default)
 
+    def table(self, file, *names):
+        """Columns of one of the run's tables, empty where it is not there."""
+        columns, _ = read_history(self.path / file)
+        return [columns.get(name, np.zeros(0)) for name in names]
+
     def column(self, name):
         """A column of the history, nan where it was not recorded."""
         return self.columns.get(name, np.full(self.rows, np.nan))

@@ -1,0 +1,124 @@
+"""The dredge pick in miniature: cuts and cooling in turn, books that close, and a resume out of the water."""
+import json
+import signal
+import time
+
+import numpy as np
+import pytest
+
+from .conftest import ROOT, arguments, finish, history, run_script, start
+
+SCRIPT = ROOT / "yade_scripts/dredge_pick.py"
+TINY = dict(cut_time=0.016, cycles=2, tool_radius_min=2e-3, tool_radius_max=2e-3, record_period=5e-4, cooling_period=0.02,
+            snapshot_period=0.25, acceleration=2e5)
+
+
+def dredge(out, *flags, **values):
+    return run_script(SCRIPT, *arguments({**TINY, **values}), "--out", str(out), *flags, out=out)
+
+
+@pytest.fixture(scope="module")
+def turns(tmp_path_factory):
+    """One run of the miniature, to its end."""
+    return dredge(tmp_path_factory.mktemp("turns") / "out", checkpoint_interval=0.2)
+
+
+def value(run, name):
+    return run.summary["results"][name]["value"]
+
+
+def stages(run):
+    """{stage: {name: column} of its rows}."""
+    columns = history(run.out)
+    stage = columns["stage [-]"]
+    return {int(k): {name.split(" [")[0]: column[stage == k] for name, column in columns.items()} for k in np.unique(stage)}
+
+
+def test_two_turns_of_cutting_and_cooling(turns):
+    assert turns.code == 0, turns.stderr
+    assert value(turns, "simulated_time") == pytest.approx(1e-3 / (0.7 * 1.6204) + 2 * 2 * np.pi / 1.6204, rel=1e-3)
+    rows = stages(turns)
+    assert {1, 2, 3, 4} <= set(rows)
+    for cut in (1, 3):
+        assert rows[cut]["tool_friction"][-1] > rows[cut]["tool_friction"][0]
+    assert rows[3]["mass_lost"][-1] > 0
+    names = {file.name for file in (turns.out / "figures").iterdir()}
+    assert {"failure.png", "heating.png", "cooling.png", "turns.png", "wear.png", "shape.png", "mass_loss.png"} <= names
+
+
+def test_in_the_water_only_heat_happens(turns):
+    rows = stages(turns)
+    for water in (2, 4):
+        for name in ("tool_work", "tool_friction", "worn_volume", "tensile_cracks", "kinetic_energy"):
+            assert np.ptp(rows[water][name]) == 0
+        assert len(rows[water]["time"]) == round((2 * np.pi / 1.6204 - 0.016) / 0.02)
+        assert np.all(np.diff(rows[water]["tool_temperature_max"]) < 0)
+        assert np.all(np.diff(rows[water]["water_heat"]) > 0)
+    steps = 2 * 0.016 / (5 * value(turns, "time_step"))
+    assert turns.summary["wall_time"]["by_engine"]["bonds"]["visits"] == pytest.approx(steps, rel=0.06)
+
+
+def test_books_close_with_the_heat_of_the_water(turns):
+    audits = turns.summary["audits"]
+    heat = audits["heat"]
+    assert -heat["convected"] > 10 and heat["generated"] > 10
+    assert abs(heat["residual"]) < 1e-12 * 1e8  # of the heat held above 0 K
+    assert -heat["convected"] == pytest.approx(history(turns.out)["water_heat [J/m]"][-1], rel=1e-9)
+    assert abs(audits["mass"]["unexplained"]) < 1e-12 * audits["mass"]["initial"]
+    assert audits["energy"]["tool_work"] > 100
+    assert abs(audits["energy"]["residual"]) < 0.03 * audits["energy"]["tool_work"]
+
+
+def test_each_cut_is_into_fresh_rock(turns):
+    shots = [np.load(file) for file in sorted((turns.out / "snapshots").glob("*.npz"))]
+    first = shots[0]
+    second = next(shot for shot in shots if shot["stage"] == 3)
+    assert not second["status"].any()
+    assert np.abs(second["rock_positions"] - first["rock_positions"]).max() < 1e-9
+    ended = [shot for shot in shots if shot["stage"] == 2][-1]
+    assert ended["status"].any()
+
+
+def test_repeated_turns_rise_and_level_off(turns):
+    table = np.array([[float(cell) for cell in line.split(",")]
+                      for line in (turns.out / "turns.csv").read_text().splitlines()[1:]])
+    peak, absorbed, released = table[:, 1], table[:, 4], table[:, 5]
+    rise = np.diff(peak)
+    assert np.all(rise > 0) and rise[-1] < 0.02 * rise[0]
+    assert released[0] < 0.95 * absorbed[0] and released[-1] == pytest.approx(absorbed[-1], rel=0.03)
+
+
+def test_killed_in_the_water_and_resumed_equals_never_stopped(turns, tmp_path):
+    out = tmp_path / "out"
+    process = start(SCRIPT, [*arguments({**TINY, "checkpoint_interval": 0.001}), "--out", str(out)])
+    deadline = time.time() + 120
+    while time.time() < deadline and process.poll() is None and checkpoint_stage(out) != 2:
+        time.sleep(0.01)
+    process.send_signal(signal.SIGKILL)
+    assert finish(process, out).code == -signal.SIGKILL and checkpoint_stage(out) == 2
+    resumed = dredge(out, "--resume", checkpoint_interval=0.2)
+    assert resumed.code == 0, resumed.stderr
+    assert resumed.summary["results"] == turns.summary["results"]
+    assert resumed.summary["audits"] == turns.summary["audits"]
+    for name in ("history.csv", "turns.csv"):
+        assert (out / name).read_bytes() == (turns.out / name).read_bytes()
+
+
+def checkpoint_stage(out):
+    """Stage of the present checkpoint, once some of it has passed; -1 without one."""
+    try:
+        folder = out / "checkpoint" / str(json.loads((out / "checkpoint/current.json").read_text())["set"])
+        with np.load(folder / "state.npz") as state:
+            return int(state["scene/stage"]) if state["scene/cooled"] > 0 else -1
+    except (OSError, ValueError, KeyError):
+        return -1
+
+
+@pytest.mark.parametrize("values, words", [
+    (dict(cut_time=4), "cut_time = 4"), (dict(feed=0.01), "feed = 0.01"), (dict(backing=0.01), "backing = 0.01"),
+    (dict(entry_angle=140, cut_time=0.6), "cut_time = 0.6"), (dict(cycles=0), "cycles"), (dict(tooth_height=0.02), "tooth_height"),
+    (dict(spin=-1), "spin = -1")])
+def test_bad_input_is_refused_in_one_line(tmp_path, values, words):
+    run = dredge(tmp_path / "out", **values)
+    assert run.code == 2 and words in run.stderr and "Traceback" not in run.stderr
+    assert not (tmp_path / "out").exists()
