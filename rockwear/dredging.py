@@ -1,4 +1,4 @@
-"""Dredging: a pick of a cutter head that swings and turns cuts rock, and cools in water for the rest of the turn (P 5, M 12)."""
+"""Dredging: a pick of a cutter head that swings and turns cuts rock, and cools in water in between (P 5, M 12)."""
 import math
 
 import numpy as np
@@ -29,13 +29,13 @@ def dredging_parameters(full):
                   "macroscopic strength, on the strengths of its bonds; 1: P's"),
         Parameter("backing", size["backing"], "m", above_zero, "rock behind the path of the pick, held at its far side"),
         Parameter("run_out", 0.06, "m", above_zero, "rock ahead of the pick at the end of the cut"),
-        Parameter("feed", 0.06, "m", above_zero, "swing between two picks on the same track; the free surface of the rock "
-                  "is the path of the pick before, and the chip feed x sin(angle) thick", "ours: P shows it in a figure only"),
+        Parameter("feed", 0.06, "m", above_zero, "swing between two picks on the same track; the free surface of the "
+                  "rock is the path of the pick before, and the chip feed x sin(angle) thick", "ours: P has a figure only"),
         Parameter("arm", 0.7, "m", above_zero, "distance of the tip from the axis of rotation", "P 5.1"),
         Parameter("spin", 1.6204, "rad/s", above_zero, "of the cutter head", "P 5.1"),
         Parameter("swing", 0.2, "m/s", number(0), "velocity of the cutter head", "P 5.1"),
         Parameter("entry_angle", 25.0, "deg", number(1, 150), "from the lowest point of the path, where the pick enters",
-                  "ours: P shows it in a figure only"),
+                  "ours: P has a figure only"),
         Parameter("cut_time", 0.65, "s", above_zero, "of cutting in a turn", "P 5.3"),
         Parameter("cycles", 3, "", integer(1), "turns, each a cut into fresh rock and cooling in water", "P 5.3"),
         Parameter("cooling_period", 0.01, "s", above_zero, "between steps while the pick cools"),
@@ -46,7 +46,8 @@ def dredging_parameters(full):
     return own + [p for p in parameters(
         kt=4e9, Rn=0.1e6, Rt=0.1e6, mu=0.8, tooth_height=0.15, tooth_width=0.15, rake=10.0, clearance=20.0,
         tip_radius=0.008, tool_radius_min=1e-3, tool_radius_max=1e-3, tool_kn=50e9, tool_kt=50e9, tool_mu=0.4,
-        contact_damping=0.3, approach=1e-3, speed_up=5.0, steel="MET71", wear_coefficient=0.0025, acceleration=1e4,
+        contact_damping=0.0, time_step_fraction=0.5, approach=1e-3, speed_up=5.0, steel="MET71",
+        wear_coefficient=0.0025, acceleration=1e4,
         rock_expansion=1e-5, convection=5000.0, ambient_temperature=283.0, rock_temperature=283.0, tool_temperature=283.0,
         heat_period=1e-3, surface_period=0.01, record_period=2e-3) if p.name not in gone]
 
@@ -81,11 +82,13 @@ class Dredging(Cutting):
         thinnest = v.feed * min(math.sin(math.radians(v.entry_angle)), math.sin(math.radians(last)))
         require(thinnest > 2 * v.radius_max, "feed", v.feed, f"so large that the chip, {thinnest:g} m at its thinnest, is "
                 f"thicker than a rock particle, {2 * v.radius_max:g}", "m")
-        require(v.backing > 6 * v.radius_max, "backing", v.backing, f"more than three rock particles, {6 * v.radius_max:g}", "m")
+        require(v.backing > 6 * v.radius_max, "backing", v.backing,
+                f"more than three rock particles, {6 * v.radius_max:g}", "m")
 
     def _check_size(self, v, vertices):
         tip = vertices[np.argmin(vertices[:, 1])]
-        require(np.ptp(vertices[:, 1]) > v.feed, "tooth_height", float(np.ptp(vertices[:, 1])), f"more than feed = {v.feed:g}", "m")
+        height = float(np.ptp(vertices[:, 1]))
+        require(height > v.feed, "tooth_height", height, f"more than feed = {v.feed:g}", "m")
         edge = np.linspace(vertices, np.roll(vertices, -1, axis=0), 50).reshape(-1, 2)
         front = edge[edge[:, 1] < tip[1] + v.feed, 0].max() - tip[0]
         self.pivot = tip + (0.0, v.arm)
@@ -103,7 +106,8 @@ class Dredging(Cutting):
         angle = np.linspace(head.start + v.spin * first, head.start + v.spin * last, 60)
         own = _arc(angle, v.arm, v.swing, v.spin, head.start)
         far = _arc(angle, v.arm + v.backing, v.swing, v.spin, head.start)
-        before = _arc(np.linspace(angle[0] - 1.0, angle[-1] + 1.0, 240), v.arm, v.swing, v.spin, head.start) - (v.feed, 0.0)
+        before = _arc(np.linspace(angle[0] - 1.0, angle[-1] + 1.0, 240), v.arm, v.swing, v.spin, head.start)
+        before[:, 0] -= v.feed
         # The free surface from the entry's radius to the last one.
         seen = [np.arctan2(before[:, 0] - x, -before[:, 1]) for x in (start, end)]
         free = before[(seen[0] >= angle[0]) & (seen[1] <= angle[-1])]
@@ -213,7 +217,9 @@ class Dredging(Cutting):
         which become equal in the stationary state (P 5.3).
         """
         state = self.heat.network.state()
-        state["temperature"][self.rock.count:] = self.v.tool_temperature
+        # Rock that has cooled down keeps out of the book.
+        state["temperature"] = np.repeat([self.v.ambient_temperature, self.v.tool_temperature],
+                                         [self.rock.count, self.tool.count])
         network = HeatNetwork(capacity=np.ones(len(state["capacity"])), edges=np.empty((0, 2), int), conductance=0.0,
                               temperature=0.0)
         network.restore(state)

@@ -40,14 +40,15 @@ def sections(run):
                 [drawn("failure", failure(run, first)), moving_picture(run, instant, limits(run), np.flatnonzero(run.stages % 2 == 1))]),
         Section("Forces", "Along and across the direction in which the pick looks; thin lines are the record, thick ones a "
                 "running mean. Only the cuts are shown, end to end.", [drawn("forces", forces(run))]),
-        *([Section("Temperature during the first cut (P fig. 13)", "The tip of the pick, in its own frame. Heat arises in the "
-                   "contact and falls off steeply behind it.", [drawn("heating", tip(run, first, paint_heat(run)))]),
+        *([Section("Temperature during the first cut (P fig. 13)", "The tip of the pick, in its own frame. Heat arises "
+                   "in the contact and falls off steeply behind it.",
+                   [drawn("heating", tip(run, first, paint_heat(run)))]),
            Section("Temperature while the pick cools in water after the first cut (P fig. 14)", "Water takes heat from the "
                    "surface, and conduction spreads it through the body.",
                    [drawn("cooling", tip(run, snapshots(run, 2, COOLING_TIMES), paint_heat(run, 2)))]),
            Section("Temperature over the turns (P fig. 15)", "Shaded: cutting. Below, the mean heating of these cuts is "
-                   "repeated on the worn pick as it is now, from the cold: peaks rise until a turn's heat leaves into the "
-                   "water in the same turn.", [drawn("turns", turns(run))])] if hot else []),
+                   "repeated on the worn pick as it is now, from the cold: peaks rise until the water takes a turn's heat "
+                   "in the same turn.", [drawn("turns", turns(run))])] if hot else []),
         Section("Accumulated wear during the first cut (P fig. 16)", "Depth worn off each particle of the surface; pale red: "
                 "particles that are gone.", [drawn("wear", tip(run, first, paint_wear(run)))]),
         Section("Shape of the pick (P fig. 17)", "Dashed: the new pick. Arc length counts from the lowest point, positive "
@@ -66,8 +67,8 @@ def summary_line(run):
 
     speed = run.parameter("spin", math.nan) * run.parameter("arm", math.nan)
     return (f"{number(speed)} m/s around the axis, swing {value('swing', 'm/s')}, {run.parameter('cycles', 0)} turns, "
-            f"mechanics {value('speed_up', '-')} times as fast, wear accelerated {value('acceleration', '-')} times, rock discs "
-            f"{value('coarseness', '-')} times as coarse as P's.")
+            f"mechanics {value('speed_up', '-')} times as fast, wear accelerated {value('acceleration', '-')} times, "
+            f"rock discs {value('coarseness', '-')} times as coarse as P's.")
 
 
 def key_results(run):
@@ -169,7 +170,8 @@ def set_up(run):
     tip_now = MM * pose(shot).of(model["outline"])[np.argmin(model["outline"][:, 1])]
     speed = run.parameter("spin", math.nan) * run.parameter("arm", math.nan)
     ahead = pose(shot).rotation @ (1.0, 0.0)
-    arrow(axes, tip_now - (0, 14), tip_now - (0, 14) + 70 * ahead, f"{number(speed)} m/s", "-|>", (0, -6), ha="left", va="top")
+    below = tip_now - (0, 14)
+    arrow(axes, below, below + 70 * ahead, f"{number(speed)} m/s", "-|>", (0, -6), ha="left", va="top")
     arrow(axes, (left + 15, top - 15), (left + 75, top - 15), f"swing {quantity(run.parameter('swing', math.nan), 'm/s')}",
           "-|>", ha="center")
     frame(axes, (left, right, bottom, top))
