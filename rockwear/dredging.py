@@ -22,12 +22,13 @@ HOTTEST = 0.01
 
 def dredging_parameters(full):
     """The parameters of the scene; full: with the discs of P, some 92,000, as defaults."""
-    size = dict(coarseness=1.0, backing=0.535) if full else dict(coarseness=4.0, backing=0.06)
+    size = dict(coarseness=1.0, backing=0.436) if full else dict(coarseness=4.0, backing=0.06)
     own = [
         Parameter("full", False, "", flag, "the defaults of coarseness and backing that give P's 92,000 discs of rock"),
         Parameter("coarseness", size["coarseness"], "", number(1, 10), "factor on the radii of rock and, for the same "
                   "macroscopic strength, on the strengths of its bonds; 1: P's"),
-        Parameter("backing", size["backing"], "m", above_zero, "rock behind the path of the pick, held at its far side"),
+        Parameter("backing", size["backing"], "m", above_zero,
+                  "rock behind the path of the pick, held at its far side"),
         Parameter("run_out", 0.06, "m", above_zero, "rock ahead of the pick at the end of the cut"),
         Parameter("feed", 0.06, "m", above_zero, "swing between two picks on the same track; the free surface of the "
                   "rock is the path of the pick before, and the chip feed x sin(angle) thick", "ours: P has a figure only"),
@@ -48,7 +49,8 @@ def dredging_parameters(full):
         tip_radius=0.008, tool_radius_min=1e-3, tool_radius_max=1e-3, tool_kn=50e9, tool_kt=50e9, tool_mu=0.4,
         contact_damping=0.0, time_step_fraction=0.5, approach=1e-3, speed_up=5.0, steel="MET71",
         wear_coefficient=0.0025, acceleration=1e4,
-        rock_expansion=1e-5, convection=5000.0, ambient_temperature=283.0, rock_temperature=283.0, tool_temperature=283.0,
+        rock_expansion=1e-5, convection=5000.0,
+        ambient_temperature=283.0, rock_temperature=283.0, tool_temperature=283.0,
         heat_period=1e-3, surface_period=0.01, record_period=2e-3) if p.name not in gone]
 
 
@@ -77,11 +79,11 @@ class Dredging(Cutting):
         self.turn_time = 2 * math.pi / v.spin
         require(v.cut_time < self.turn_time, "cut_time", v.cut_time, f"less than a turn, {self.turn_time:g}", "s")
         last = v.entry_angle + math.degrees(v.spin * v.cut_time)
-        require(last < 170, "cut_time", v.cut_time, f"so short that the cut, from {v.entry_angle:g} degrees on, ends before "
-                "170 degrees", "s")
+        require(last < 170, "cut_time", v.cut_time,
+                f"so short that the cut, from {v.entry_angle:g} degrees on, ends before 170 degrees", "s")
         thinnest = v.feed * min(math.sin(math.radians(v.entry_angle)), math.sin(math.radians(last)))
-        require(thinnest > 2 * v.radius_max, "feed", v.feed, f"so large that the chip, {thinnest:g} m at its thinnest, is "
-                f"thicker than a rock particle, {2 * v.radius_max:g}", "m")
+        require(thinnest > 2 * v.radius_max, "feed", v.feed, f"so large that the chip, {thinnest:g} m at its thinnest, "
+                f"is thicker than a rock particle, {2 * v.radius_max:g}", "m")
         require(v.backing > 6 * v.radius_max, "backing", v.backing,
                 f"more than three rock particles, {6 * v.radius_max:g}", "m")
 
@@ -96,7 +98,7 @@ class Dredging(Cutting):
 
     def _head(self, v, speed_up, origin):
         """The motion that brings the tip to the entry of the rock, `speed_up` times as fast as the process."""
-        return SwingAndRotation(centre=np.asarray(origin, float), swing=(v.swing * speed_up, 0.0), spin=v.spin * speed_up,
+        return SwingAndRotation(centre=origin, swing=(v.swing * speed_up, 0.0), spin=v.spin * speed_up,
                                 pivot=self.pivot, start=math.radians(v.entry_angle) - self.lead)
 
     def _specimen(self, v):

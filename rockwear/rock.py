@@ -143,7 +143,7 @@ class Specimen:
 
 
 class CutOut(Specimen):
-    """The part of a specimen whose particles have their centres inside a polygon (k, 2) m, without what hangs loose there.
+    """The part of a specimen whose particles have their centres inside a polygon (k, 2) m, without loose pieces.
 
     whole: positions and radii of the specimen that it was cut out of; the others as in Specimen.
     """

@@ -123,7 +123,8 @@ class ToolBodies:
         Between two visits a particle is off its path by at most v w period^2 / 8, and no error ever builds up.
         """
         goal = self.motion.pose(time + period)
-        for (index, body), (x, y) in zip(self.body_of.items(), goal.of(self.tool.positions[list(self.body_of)]).tolist()):
+        places = goal.of(self.tool.positions[list(self.body_of)]).tolist()
+        for (index, body), (x, y) in zip(self.body_of.items(), places):
             state = O.bodies[body].state
             here = state.pos
             velocity = self.velocities[index] = (x - here[0]) / period, (y - here[1]) / period
@@ -135,7 +136,8 @@ class ToolBodies:
         places = self.pose.of(self.tool.positions[np.asarray(indices, int)]).tolist()
         origin, velocity = self._moving_point()
         for index, (x, y) in zip(indices, places):
-            body = finite_disc((x, y), float(self.tool.radii[index]), material="steel", mask=TOOL_MASK, mass=0.0, inertia=0.0)
+            body = finite_disc((x, y), float(self.tool.radii[index]), material="steel", mask=TOOL_MASK, mass=0.0,
+                               inertia=0.0)
             state = body.state
             state.blockedDOFs = "xyzXYZ"
             self.velocities[int(index)] = (velocity[0] - self.spin * (y - origin[1]),

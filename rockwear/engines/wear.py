@@ -75,8 +75,9 @@ class ToolContact(Engine):
         if self.tool.spin:
             # The contact point turns with the tool about its particle's centre.
             geom = interaction.geom
-            arm = self.tool.spin * (self.tool.tool.radii[index] - 0.5 * geom.penetrationDepth) * (1 if tool_first else -1)
-            vx, vy = vx - arm * geom.normal[1], vy + arm * geom.normal[0]
+            arm = self.tool.tool.radii[index] - 0.5 * geom.penetrationDepth
+            turning = self.tool.spin * (arm if tool_first else -arm)
+            vx, vy = vx - turning * geom.normal[1], vy + turning * geom.normal[0]
         self.work_done -= x * vx + y * vy
         self.touching[index, rock] = self.touching.get((index, rock), 0.0) + elapsed
         if phys.cn > 0:

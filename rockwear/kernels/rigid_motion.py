@@ -1,4 +1,4 @@
-"""Rigid motions of a tool in the plane, as exact functions of time: a straight cut, and a pick of a swinging cutter head.
+"""Rigid motions of a tool in the plane, as exact functions of time: a straight cut, and a swinging cutter head.
 
 A motion has pose(t) -> Pose; velocity(t) -> (2,) m/s of the origin of the body's own frame, t in s; and `spin`, rad/s.
 """
@@ -46,8 +46,8 @@ class SwingAndRotation:
 
         c(t) = c0 + u t,   turn(t) = a + w t,   x(t) = c(t) + R(turn) (X - C)
 
-    C is the centre as the pick sees it. A point at the distance R from the centre runs through a trochoid (P: cycloidal)
-    at the circumferential velocity w R, to which the swing adds.
+    C is the centre as the pick sees it. A point at the distance R from the centre runs through a trochoid (P: a
+    cycloid) at the circumferential velocity w R, to which the swing adds.
 
     centre: c0, (2,) m; swing: u, (2,) m/s; spin: w, rad/s, positive counter-clockwise; start: a, rad;
     pivot: C, (2,) m in the pick's own frame.

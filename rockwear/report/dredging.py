@@ -1,4 +1,4 @@
-"""Figures of a dredge pick, those of P 12-18: failure, temperature, its course over the turns, wear, shape, mass loss."""
+"""Figures of a dredge pick, those of P 12-18: failure, temperature and its course, wear, shape, mass loss."""
 import math
 
 import numpy as np
@@ -6,8 +6,8 @@ from matplotlib.colors import LogNorm, Normalize, to_rgba
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from .cutting import (CRACK, EDGE, PALE, ROCK, SKIN, SUPPORT, WARMTH, CutPicture, arrow, books, moved_tool, moving_picture,
-                      pose, worn_outlines)
+from .cutting import (CRACK, EDGE, PALE, ROCK, SKIN, SUPPORT, WARMTH, CutPicture, arrow, books, moved_tool,
+                      moving_picture, pose, worn_outlines)
 from .page import Section, machine_tiles, number, percent, quantity, table, tiles
 from .plots import MM, canvas, discs, frame, running_mean, save
 
@@ -33,26 +33,27 @@ def sections(run):
     hot = len(run.snapshot(0)["temperature"]) > 0
     return [
         Section("Key results", summary_line(run), [key_results(run), cut_table(run)]),
-        Section("Set-up", "Grey discs are held. Dashed: the path of the tip, an arc that the swing stretches to a cycloid. "
-                "The free surface is the path of the pick before.", [drawn("set_up", set_up(run))]),
-        Section("Failure of the rock (P fig. 12)", "The first cut. Red: broken bonds. Blue: chips, which no chain of bonds "
-                "joins to the support. The darker a disc, the more of its bonds are gone.",
-                [drawn("failure", failure(run, first)), moving_picture(run, instant, limits(run), np.flatnonzero(run.stages % 2 == 1))]),
-        Section("Forces", "Along and across the direction in which the pick looks; thin lines are the record, thick ones a "
-                "running mean. Only the cuts are shown, end to end.", [drawn("forces", forces(run))]),
+        Section("Set-up", "Grey discs are held. Dashed: the path of the tip, an arc that the swing stretches to a "
+                "cycloid. The free surface is the path of the pick before.", [drawn("set_up", set_up(run))]),
+        Section("Failure of the rock (P fig. 12)", "The first cut. Red: broken bonds. Blue: chips, which no chain of "
+                "bonds joins to the support. The darker a disc, the more of its bonds are gone.",
+                [drawn("failure", failure(run, first)),
+                 moving_picture(run, instant, limits(run), np.flatnonzero(run.stages % 2 == 1))]),
+        Section("Forces", "Along and across the direction in which the pick looks; thin lines are the record, thick ones "
+                "a running mean. Only the cuts are shown, end to end.", [drawn("forces", forces(run))]),
         *([Section("Temperature during the first cut (P fig. 13)", "The tip of the pick, in its own frame. Heat arises "
                    "in the contact and falls off steeply behind it.",
                    [drawn("heating", tip(run, first, paint_heat(run)))]),
-           Section("Temperature while the pick cools in water after the first cut (P fig. 14)", "Water takes heat from the "
-                   "surface, and conduction spreads it through the body.",
+           Section("Temperature while the pick cools in water after the first cut (P fig. 14)", "Water takes heat from "
+                   "the surface, and conduction spreads it through the body.",
                    [drawn("cooling", tip(run, snapshots(run, 2, COOLING_TIMES), paint_heat(run, 2)))]),
-           Section("Temperature over the turns (P fig. 15)", "Shaded: cutting. Below, the mean heating of these cuts is "
-                   "repeated on the worn pick as it is now, from the cold: peaks rise until the water takes a turn's heat "
+           Section("Temperature over the turns (P fig. 15)", "Shaded: cutting. Below, the mean heating of these cuts "
+                   "is repeated on the worn pick as it is now, from the cold: peaks rise until the water takes a turn's heat "
                    "in the same turn.", [drawn("turns", turns(run))])] if hot else []),
-        Section("Accumulated wear during the first cut (P fig. 16)", "Depth worn off each particle of the surface; pale red: "
-                "particles that are gone.", [drawn("wear", tip(run, first, paint_wear(run)))]),
-        Section("Shape of the pick (P fig. 17)", "Dashed: the new pick. Arc length counts from the lowest point, positive "
-                "up the rake face.", [drawn("shape", worn_outlines(run, after_cuts(run)))]),
+        Section("Accumulated wear during the first cut (P fig. 16)", "Depth worn off each particle of the surface; pale "
+                "red: particles that are gone.", [drawn("wear", tip(run, first, paint_wear(run)))]),
+        Section("Shape of the pick (P fig. 17)", "Dashed: the new pick. Arc length counts from the lowest point, "
+                "positive up the rake face.", [drawn("shape", worn_outlines(run, after_cuts(run)))]),
         Section("Loss of mass (P fig. 18)", "Particles gone, and Archard's volume, which they follow.",
                 [drawn("mass_loss", mass_loss(run))]),
         books(run)]
@@ -75,17 +76,19 @@ def key_results(run):
     """The numbers an engineer looks for first."""
     energy = run.summary.get("audits", {}).get("energy", {})
     water = run.column("water_heat")
+    to_water = f"{number(1e-3 * water[-1])} kJ/m" if len(water) and np.isfinite(water[-1]) else "none"
     shown = [
         ("mean cutting force", quantity(run.result("mean_cutting_force"), "N/m"), "while cutting"),
         ("peak cutting force", quantity(run.result("peak_cutting_force"), "N/m"), ""),
         ("specific energy", quantity(run.result("specific_energy"), "J/m3"), ""),
         ("mass lost", percent(run.result("mass_lost"), 1.0), f"{run.result('particles_removed')} particles removed"),
         ("hottest particle", quantity(run.result("tool_temperature_max"), "K"), "of the pick"),
-        ("heat to the water", f"{number(1e-3 * water[-1])} kJ/m" if len(water) and np.isfinite(water[-1]) else "none", ""),
+        ("heat to the water", to_water, "from pick and rock"),
         ("levels off after", levelling(run), "of the same cut again and again"),
         ("particles", f"{run.result('rock_particles')} + {run.result('tool_particles')}", "rock + tool"),
         ("time step", f"{number(1e9 * run.result('time_step'))} ns", "of the mechanics"),
-        ("energy residual", percent(energy.get("residual", math.nan), energy.get("tool_work", 0.0)), "of the tool's work"),
+        ("energy residual", percent(energy.get("residual", math.nan), energy.get("tool_work", 0.0)),
+         "of the tool's work"),
         *machine_tiles(run)]
     return tiles(shown)
 
@@ -114,8 +117,8 @@ def cut_table(run):
              quantity(of("tool_temperature_max", np.min, 2 * n), "K"),
              percent(of("mass_lost", np.max, 2 * n - 1), 1.0))
             for n in range(1, run.parameter("cycles", 0) + 1) if (stage == 2 * n - 1).any()]
-    return table(rows, ("", "mean cutting force", "hottest particle", "hottest 1 % of the pick", "hottest after cooling",
-                        "mass lost so far"))
+    return table(rows, ("", "mean cutting force", "hottest particle", "hottest 1 % of the pick",
+                        "hottest after cooling", "mass lost so far"))
 
 
 # ---- pieces of pictures
@@ -172,8 +175,8 @@ def set_up(run):
     ahead = pose(shot).rotation @ (1.0, 0.0)
     below = tip_now - (0, 14)
     arrow(axes, below, below + 70 * ahead, f"{number(speed)} m/s", "-|>", (0, -6), ha="left", va="top")
-    arrow(axes, (left + 15, top - 15), (left + 75, top - 15), f"swing {quantity(run.parameter('swing', math.nan), 'm/s')}",
-          "-|>", ha="center")
+    swing = quantity(run.parameter("swing", math.nan), "m/s")
+    arrow(axes, (left + 15, top - 15), (left + 75, top - 15), f"swing {swing}", "-|>", ha="center")
     frame(axes, (left, right, bottom, top))
     axes.legend(handles=[Patch(color=ROCK, label="bonded rock"), Patch(color=SUPPORT, label="held"),
                          Patch(color=PALE, label="pick"), Patch(color=SKIN, label="its skin"),
@@ -227,16 +230,16 @@ def paint_heat(run, stage=1):
 
 def paint_wear(run):
     """A painter of the worn depth of the tool's particles."""
-    model = run.model
-    norm = Normalize(0, 2 * MM * model["tool_radii"].max())
+    places, radii = run.model["tool_positions"], run.model["tool_radii"]
+    norm = Normalize(0, 2 * MM * radii.max())
 
     def paint(axes, shot):
         alive = shot["alive"]
         worn, sound = alive & (shot["worn_depth"] > 0), alive & ~(shot["worn_depth"] > 0)
-        discs(axes, model["tool_positions"][sound], model["tool_radii"][sound], facecolors="#dfe3e6", edgecolors="white")
-        discs(axes, model["tool_positions"][~alive], model["tool_radii"][~alive], facecolors="#f9dcdc", edgecolors="#e08a8a")
-        return discs(axes, model["tool_positions"][worn], model["tool_radii"][worn], array=MM * shot["worn_depth"][worn],
-                     norm=norm, cmap="YlOrRd", edgecolors="#777777", linewidths=0.4, label="worn depth / mm")
+        discs(axes, places[sound], radii[sound], facecolors="#dfe3e6", edgecolors="white")
+        discs(axes, places[~alive], radii[~alive], facecolors="#f9dcdc", edgecolors="#e08a8a")
+        return discs(axes, places[worn], radii[worn], array=MM * shot["worn_depth"][worn], norm=norm, cmap="YlOrRd",
+                     edgecolors="#777777", linewidths=0.4, label="worn depth / mm")
     return paint
 
 

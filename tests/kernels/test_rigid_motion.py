@@ -23,7 +23,8 @@ def test_lengths_stay_and_velocity_and_spin_are_the_derivatives(path):
     t, dt = 0.37, 1e-5
     before, after = path.pose(t - dt), path.pose(t + dt)
     moved = path.pose(t).of(POINTS)
-    assert np.linalg.norm(moved - moved[0], axis=1) == pytest.approx(np.linalg.norm(POINTS - POINTS[0], axis=1), rel=1e-13)
+    lengths = np.linalg.norm(POINTS - POINTS[0], axis=1)
+    assert np.linalg.norm(moved - moved[0], axis=1) == pytest.approx(lengths, rel=1e-13)
     assert (after.offset - before.offset) / (2 * dt) == pytest.approx(path.velocity(t), rel=1e-8)
     assert (after.turn - before.turn) / (2 * dt) == pytest.approx(path.spin, rel=1e-9)
     across = np.array([[0.0, -path.spin], [path.spin, 0.0]])

@@ -9,8 +9,8 @@ import pytest
 from .conftest import ROOT, arguments, finish, history, run_script, start
 
 SCRIPT = ROOT / "yade_scripts/dredge_pick.py"
-TINY = dict(cut_time=0.016, cycles=2, tool_radius_min=2e-3, tool_radius_max=2e-3, record_period=5e-4, cooling_period=0.02,
-            snapshot_period=0.25, acceleration=2e5)
+TINY = dict(cut_time=0.016, cycles=2, tool_radius_min=2e-3, tool_radius_max=2e-3, record_period=5e-4,
+            cooling_period=0.02, snapshot_period=0.25, acceleration=2e5)
 
 
 def dredge(out, *flags, **values):
@@ -31,7 +31,8 @@ def stages(run):
     """{stage: {name: column} of its rows}."""
     columns = history(run.out)
     stage = columns["stage [-]"]
-    return {int(k): {name.split(" [")[0]: column[stage == k] for name, column in columns.items()} for k in np.unique(stage)}
+    return {int(k): {name.split(" [")[0]: column[stage == k] for name, column in columns.items()}
+            for k in np.unique(stage)}
 
 
 def test_two_turns_of_cutting_and_cooling(turns):
