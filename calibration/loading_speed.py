@@ -22,7 +22,7 @@ SPEEDS = [0.4, 0.2, 0.1, 0.05, 0.025, 0.0125]
 SEEDS = 1, 2
 QUANTITIES = {"peak_stress": "strength", "youngs_modulus": "E"}
 TOLERANCE = 0.02
-DEFAULT = 0.1
+DEFAULT = 0.05
 
 
 def measure(folder, at_once=2):
@@ -39,22 +39,22 @@ def measure(folder, at_once=2):
 
 
 def deviations(measured):
-    """Rows {rock, test, quantity, speed, deviation, error}: mean over packings from the slowest, its standard error."""
+    """Rows {rock, test, quantity, speed, deviation, low, high}: from the slowest, mean and range over the packings."""
     rows = []
     for (rock, test, quantity), values in measured.items():
         off = values / values[:, -1:] - 1
         for k, speed in enumerate(SPEEDS):
             rows.append({"rock": rock, "test": test, "quantity": QUANTITIES[quantity], "speed": speed,
-                         "deviation": float(off[:, k].mean()),
-                         "error": float(off[:, k].std(ddof=1) / np.sqrt(len(off)))})
+                         "deviation": float(off[:, k].mean()), "low": float(off[:, k].min()),
+                         "high": float(off[:, k].max())})
     return rows
 
 
 def fastest(rows, tolerance=TOLERANCE):
-    """The highest speed at which, and below which, every mean deviation is within the tolerance."""
+    """The highest speed at which, and below which, every packing's deviation is within the tolerance."""
     good = SPEEDS[-1]
     for speed in reversed(SPEEDS):
-        if any(abs(row["deviation"]) > tolerance for row in rows if row["speed"] == speed):
+        if any(max(-row["low"], row["high"]) > tolerance for row in rows if row["speed"] == speed):
             break
         good = speed
     return good
@@ -69,9 +69,11 @@ def draw(rows):
         for rock, colour in zip(ROCKS, ("#b5541c", "#2d6a9f")):
             for quantity, style in (("strength", "o-"), ("E", "s--")):
                 chosen = [row for row in rows if (row["rock"], row["test"], row["quantity"]) == (rock, test, quantity)]
-                axes.errorbar([row["speed"] for row in chosen], [100 * row["deviation"] for row in chosen],
-                              [100 * row["error"] for row in chosen], fmt=style, color=colour, capsize=3, markersize=4,
-                              alpha=1 if quantity == "strength" else 0.5, label=f"{rock}'s bonds, {quantity}")
+                mean, low, high = (100 * np.array([row[name] for row in chosen])
+                                   for name in ("deviation", "low", "high"))
+                axes.errorbar([row["speed"] for row in chosen], mean, [mean - low, high - mean], fmt=style,
+                              color=colour, capsize=3, markersize=4, alpha=1 if quantity == "strength" else 0.5,
+                              label=f"{rock}'s bonds, {quantity}")
         axes.set(xscale="log", xlabel="speed of each platen, m/s", title=test)
         axes.set_xticks(SPEEDS, [f"{speed:g}" for speed in SPEEDS])
         axes.minorticks_off()
@@ -83,11 +85,11 @@ def draw(rows):
 
 def markdown(rows):
     """The table, as lines."""
-    lines = [f"Speed of loading: deviation from {SPEEDS[-1]:g} m/s in %, mean of {len(SEEDS)} packings of 525 discs ± "
-             f"its standard error. The fastest within {100 * TOLERANCE:g} % in everything: {fastest(rows):g} m/s.", "",
+    lines = [f"Speed of loading: deviation from {SPEEDS[-1]:g} m/s in %, mean of {len(SEEDS)} packings of 525 discs "
+             f"and their range. The fastest within {100 * TOLERANCE:g} % for every packing: {fastest(rows):g} m/s.", "",
              "| m/s | " + " | ".join(f"{speed:g}" for speed in SPEEDS) + " |", "|---" * (len(SPEEDS) + 1) + "|"]
     for rock, test, quantity in dict.fromkeys((row["rock"], row["test"], row["quantity"]) for row in rows):
-        cells = [f"{100 * row['deviation']:+.1f} ± {100 * row['error']:.1f}" for row in rows
+        cells = [f"{100 * row['deviation']:+.1f} ({100 * row['low']:+.1f} … {100 * row['high']:+.1f})" for row in rows
                  if (row["rock"], row["test"], row["quantity"]) == (rock, test, quantity)]
         lines.append(f"| {rock}'s bonds, {test}, {quantity} | " + " | ".join(cells) + " |")
     return lines

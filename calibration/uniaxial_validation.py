@@ -79,7 +79,7 @@ def slow_enough(runs):
 
 
 SECTIONS = [
-    Section("Laboratory: the laws of M 5.1", "M's specimen under the three laws; H on 525 discs of three packings.", laws,
+    Section("Laboratory: the laws of M 5.1", "The three laws; H on 525 discs of three packings.", laws,
             {**{folder_of(case, test, 1): uniaxial(test=test, **values) for case, values in MAIN.items()
                       for test in TESTS},
                    **{f"small-{folder_of(case, 'compression', seed)}": uniaxial(seed=seed, **SMALL, **values)
