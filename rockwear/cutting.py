@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 from scipy.spatial import cKDTree
-from yade import O, utils
+from yade import FrictMat, O, utils
 
 from . import scene, vtk
 from .engines.bonds import Bonds, Crack, LettingGo, RockFriction
@@ -143,6 +143,7 @@ class Cutting(scene.Scene):
     """
 
     looking = {*scene.Scene.looking, "tool_contact"}
+    loose_rock, put_loop = FrictMat, staticmethod(scene.put_loop)
 
     def __init__(self, values):
         self.values = values
@@ -169,13 +170,17 @@ class Cutting(scene.Scene):
         self._check_size(v, vertices)
         self.law = linear_law(v.law, kn=v.kn, kt=v.kt, Rn=v.Rn, Rt=v.Rt, H=v.H, mu=v.mu)
         self.rock = self._specimen(v)
-        self.tool = Tool(vertices=vertices, radius_min=v.tool_radius_min, radius_max=v.tool_radius_max, seed=v.seed,
-                         removal=v.removal, material=self.tool_material)
+        self.tool = self._make_tool(vertices)
         self.motion = self._motion(v)
         self._choose_time_step(v)
         self._plan(self._stages(v))
         self.book = {"kinetic": 0.0, "elastic": 0.0, "contact_elastic": 0.0}
         self.cracks_of_past_cycles = []
+
+    def _make_tool(self, vertices):
+        v = self.v
+        return Tool(vertices=vertices, radius_min=v.tool_radius_min, radius_max=v.tool_radius_max, seed=v.seed,
+                    removal=v.removal, material=self.tool_material)
 
     # ---- parameters
 
@@ -256,13 +261,13 @@ class Cutting(scene.Scene):
         """Fill YADE's scene: bodies, bonds, engines; the tool in front of the rock."""
         O.reset()
         v, rock = self.v, self.rock
-        scene.put_rock_materials(mu=v.mu)
+        scene.put_rock_materials(mu=v.mu, loose=self.loose_rock)
         scene.put_steel(mu=v.tool_mu, contact_damping=v.contact_damping)
         scene.put_rock(rock)
-        scene.put_loop(kn=v.kn, kt=v.kt, mu=v.mu, tool=(v.tool_kn, v.tool_kt, v.tool_mu))
+        self.put_loop(kn=v.kn, kt=v.kt, mu=v.mu, tool=(v.tool_kn, v.tool_kt, v.tool_mu))
         self._make_engines()
         scene.make_bonds(rock, self.bonds)
-        self.bodies.add(sorted(self.tool.erosion.skin))
+        self._put_tool()
         self._hang_in()
         self.path_start = O.iter
         if self.heat:
@@ -271,16 +276,11 @@ class Cutting(scene.Scene):
         self.canonical()
 
     def _make_engines(self):
-        v, rock, tool = self.v, self.rock, self.tool
-        self.bodies = scene.ToolBodies(tool, self.motion)
+        v, rock = self.v, self.rock
         self.bonds = Bonds(pairs=rock.pairs, law=self.law, strength_factor=rock.strength_factor, clock=lambda: self.time)
-        guide = Guide(bodies=self.bodies, clock=self._path_time, period=GUIDE_PERIOD) if self.motion.spin else None
         motion = Foresight(masses=rock.masses, inertias=rock.inertias, radii=rock.radii, held=rock.supported)
-        self.rock_friction = RockFriction(bonds=self.bonds, motion=motion)
-        self.contact = ToolContact(tool=self.bodies, motion=motion, needs=self.wear_law.needs)
-        self.wear = Wear(contact=self.contact, erosion=tool.erosion, tool=self.bodies, law=self.wear_law,
-                         hardness=self.hardness, temperature=self._tool_temperature, on_removal=self._on_removal)
-        self.profile = WearProfile(erosion=tool.erosion, place=self._places()) if v.acceleration else None
+        self._make_tool_engines(motion)
+        guide = Guide(bodies=self.bodies, clock=self._path_time, period=GUIDE_PERIOD) if self.motion.spin else None
         self.heat = self._heat() if v.heat else None
         self.expansion = self._expansion() if v.heat and v.rock_expansion else None
         self.damping = BackgroundDamping(rate=v.background_damping, bodies=range(rock.count)) if v.background_damping else None
@@ -289,6 +289,16 @@ class Cutting(scene.Scene):
         self.watch = Watch(work=lambda: self.contact.work_done, floor=50 * kick)
         self._enlist(self.bonds, self.contact, self.rock_friction, LettingGo(self.bonds), guide, self.wear,
                      self.profile, self.heat, self.expansion, self.damping, self.recorder, self.watch)
+
+    def _make_tool_engines(self, motion):
+        """Bodies and engines of the tool, and the friction of the rock, whose account may be one with the tool's."""
+        v, tool = self.v, self.tool
+        self.bodies = scene.ToolBodies(tool, self.motion)
+        self.rock_friction = RockFriction(bonds=self.bonds, motion=motion)
+        self.contact = ToolContact(tool=self.bodies, motion=motion, needs=self.wear_law.needs)
+        self.wear = Wear(contact=self.contact, erosion=tool.erosion, tool=self.bodies, law=self.wear_law,
+                         hardness=self.hardness, temperature=self._tool_temperature, on_removal=self._on_removal)
+        self.profile = WearProfile(erosion=tool.erosion, place=self._places()) if v.acceleration else None
 
     def _places(self):
         """(m,) number of the place along the first outline that each tool particle is nearest to."""
@@ -384,7 +394,7 @@ class Cutting(scene.Scene):
     def _put_back(self, folder):
         """The rock of the start-up's end, and in it the tool as it is worn now (M 9.1)."""
         friction = self.contact.friction, self.rock_friction.law.plasticDissipation()
-        released, alive = self.bonds.energy_released, self.tool.erosion.alive
+        released = self.bonds.energy_released
         self.cracks_of_past_cycles += self.bonds.cracks[len(self.start["bonds"]["cracks"]):]
         O.load(str(folder / "start_up.yade.gz"))
         self.bonds.restore(self.start["bonds"])
@@ -392,14 +402,22 @@ class Cutting(scene.Scene):
         self.bodies.restore(self.start["bodies"])
         self._connect()
         self.first_iteration = O.iter
-        self.bodies.erase([i for i in self.bodies.body_of if not alive[i]])
-        self.bodies.add([i for i in sorted(self.tool.erosion.skin) if i not in self.bodies.body_of])
+        self._put_tool_back()
         self.contact.law.initPlasticDissipation(friction[0])
         self.rock_friction.law.initPlasticDissipation(friction[1])
         if self.heat:
             self.heat.replace_rock(self.start["rock_temperature"])
             self.heat.find_surfaces()
         self.canonical()
+
+    def _put_tool(self):
+        self.bodies.add(sorted(self.tool.erosion.skin))
+
+    def _put_tool_back(self):
+        """Bring the tool of the start-up's end to its present shape."""
+        erosion = self.tool.erosion
+        self.bodies.erase([i for i in self.bodies.body_of if not erosion.alive[i]])
+        self.bodies.add([i for i in sorted(erosion.skin) if i not in self.bodies.body_of])
 
     # ---- what a checkpoint holds
 
@@ -460,7 +478,7 @@ class Cutting(scene.Scene):
         elapsed = self.recorder.elapsed()
         # Along and across the direction in which the tool looks.
         self.bodies.connect()
-        impulse = self.contact.take_impulse() @ self.bodies.pose.rotation
+        impulse = self.contact.take_impulse()[:2] @ self.bodies.pose.rotation
         force = impulse / elapsed if elapsed else impulse
         return {"time": (self.time, "s"), "stage": (self.stage, "-"), "cutting_force": (-force[0], "N/m"),
                 "thrust_force": (force[1], "N/m"), "tool_work": (self.contact.work_done, "J/m"),
@@ -505,7 +523,7 @@ class Cutting(scene.Scene):
     def progress(self):
         """A few words on how it stands."""
         words = [f"{self.bonds.log()['tensile_cracks'][0] + self.bonds.log()['shear_cracks'][0]} cracks",
-                 f"{100 * self.tool.erosion.mass_fraction_lost:.2f} % of the tool worn"]
+                 self._worn_words()]
         if self.heat:
             words.append(f"hottest {self.heat.log()['tool_temperature_max'][0] - KELVIN:.0f} C")
         return ", ".join(words)
@@ -513,6 +531,15 @@ class Cutting(scene.Scene):
     def _cut_area(self):
         """Area (m2) of the rock that the tool has gone through."""
         return self.v.depth_of_cut * self.v.velocity * self.time
+
+    def _worn_words(self):
+        return f"{100 * self.tool.erosion.mass_fraction_lost:.2f} % of the tool worn"
+
+    def _worn_results(self):
+        erosion = self.tool.erosion
+        return {"mass_lost": (erosion.mass_fraction_lost, "-"), "worn_volume": (erosion.archard_volume, "m3/m"),
+                "particles_removed": (int(np.sum(~erosion.alive)), "-"),
+                "dropped_volume": (erosion.lost_with_pieces, "m3/m"), "tool_particles": (self.tool.count, "-")}
 
     def results(self):
         """{name: (value, unit)} of the run."""
@@ -524,12 +551,8 @@ class Cutting(scene.Scene):
                  "mean_cutting_force": (float(cutting.mean()), "N/m"), "peak_cutting_force": (float(cutting.max()), "N/m"),
                  "mean_thrust_force": (float(columns.get("thrust_force", np.zeros(1)).mean()), "N/m"),
                  "specific_energy": (self.contact.work_done / area if area else 0.0, "J/m3"),
-                 "mass_lost": (self.tool.erosion.mass_fraction_lost, "-"),
-                 "worn_volume": (self.tool.erosion.archard_volume, "m3/m"),
-                 "particles_removed": (int(np.sum(~self.tool.erosion.alive)), "-"),
-                 "dropped_volume": (self.tool.erosion.lost_with_pieces, "m3/m"),
-                 **self.bonds.log(), **{f"rock_{k}": value for k, value in self.rock.report().items()},
-                 "tool_particles": (self.tool.count, "-")}
+                 **self._worn_results(),
+                 **self.bonds.log(), **{f"rock_{k}": value for k, value in self.rock.report().items()}}
         if self.profile:
             found.update(self._trust())
         if self.heat:

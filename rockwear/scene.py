@@ -2,15 +2,19 @@
 import math
 
 import numpy as np
-from yade import (Bo1_Sphere_Aabb, ForceResetter, FrictMat, FrictViscoMat, Ig2_Sphere_Sphere_ScGeom,
+from yade import (Bo1_Facet_Aabb, Bo1_Sphere_Aabb, ForceResetter, FrictMat, FrictViscoMat, Ig2_Facet_Sphere_ScGeom,
+                  Ig2_Sphere_Sphere_ScGeom,
                   InsertionSortCollider, InteractionLoop, Ip2_FrictMat_FrictMat_FrictPhys,
-                  Ip2_FrictMat_FrictViscoMat_FrictViscoPhys, Ip2_JCFpmMat_JCFpmMat_JCFpmPhys, JCFpmMat,
+                  Ip2_FrictMat_FrictViscoMat_FrictViscoPhys, Ip2_FrictViscoMat_FrictViscoMat_FrictViscoPhys,
+                  Ip2_JCFpmMat_JCFpmMat_JCFpmPhys, JCFpmMat,
                   Law2_ScGeom_FrictPhys_CundallStrack, Law2_ScGeom_FrictViscoPhys_CundallStrackVisco,
                   Law2_ScGeom_JCFpmPhys_JointedCohesiveFrictionalPM, MatchMaker, NewtonIntegrator, O, Quaternion,
-                  utils)
+                  Vector3, utils)
 
 from . import engines
 from .engines.bonds import Crack
+from .facet_tool import corners, incentres
+from .kernels.boundary import nearest_on_triangle
 from .kernels.rigid_motion import Pose
 
 ROCK_MASK, TOOL_MASK = 1, 3
@@ -22,15 +26,15 @@ def exactly(value):
     return MatchMaker(algo="val", val=value)
 
 
-def put_rock_materials(*, mu):
+def put_rock_materials(*, mu, loose=FrictMat):
     """Rock while it is bonded, and rock afterwards.
 
     Rock changes its material after bonding: a bond stays the bond it is, and every later contact is a plain Coulomb
-    contact. Stiffness is given by the contact laws, not by these.
+    contact. Stiffness is given by the contact laws, not by these. loose: FrictViscoMat beside a tool of facets.
     """
     O.materials.append(JCFpmMat(type=1, young=1e9, poisson=1.0, frictionAngle=0.0, density=1.0, tensileStrength=1.0,
                                 cohesion=1.0, label="bonding rock"))
-    O.materials.append(FrictMat(young=1e9, poisson=0.3, frictionAngle=math.atan(mu), density=1.0, label="loose rock"))
+    O.materials.append(loose(young=1e9, poisson=0.3, frictionAngle=math.atan(mu), density=1.0, label="loose rock"))
 
 
 def put_steel(*, mu, contact_damping):
@@ -54,19 +58,42 @@ def put_loop(*, kn, kt, mu, tool=None, damping=0.0):
 
     tool: (kn, kt, mu) of its contacts, None without a tool; damping: non-viscous (Cundall's), a fraction of each force.
     """
-    parameters = [Ip2_JCFpmMat_JCFpmMat_JCFpmPhys(cohesiveTresholdIteration=1),
-                  Ip2_FrictMat_FrictMat_FrictPhys(kn=exactly(kn), ks=exactly(kt), frictAngle=exactly(math.atan(mu)))]
-    laws = [Law2_ScGeom_JCFpmPhys_JointedCohesiveFrictionalPM(neverErase=True),
-            Law2_ScGeom_FrictPhys_CundallStrack(traceEnergy=True)]
+    parameters = [Ip2_FrictMat_FrictMat_FrictPhys(kn=exactly(kn), ks=exactly(kt), frictAngle=exactly(math.atan(mu)))]
+    laws = [Law2_ScGeom_FrictPhys_CundallStrack(traceEnergy=True)]
     if tool:
         tool_kn, tool_kt, tool_mu = tool
         parameters.append(Ip2_FrictMat_FrictViscoMat_FrictViscoPhys(
             kn=exactly(tool_kn), kRatio=exactly(tool_kt / tool_kn), frictAngle=exactly(math.atan(tool_mu))))
         laws.append(Law2_ScGeom_FrictViscoPhys_CundallStrackVisco(traceEnergy=True))
+    _put_engines([Bo1_Sphere_Aabb()], [Ig2_Sphere_Sphere_ScGeom()], parameters, laws, damping)
+
+
+def put_loop_with_facets(*, kn, kt, mu, tool, damping=0.0):
+    """The same beside a tool of facets.
+
+    YADE puts a facet first into its contacts, and has no functor for (steel, rock) in this order. Steel and loose rock
+    are of one kind here, FrictViscoMat, and the constants go by the pair of materials; rock has no dashpot. One law then
+    keeps one account of friction, which engines.facets divides.
+    """
+    rock, steel = O.materials["loose rock"].id, O.materials["steel"].id
+
+    def by_pair(of_rock, of_tool):
+        return MatchMaker(matches=((rock, rock, of_rock), (rock, steel, of_tool)))
+
+    tool_kn, tool_kt, tool_mu = tool
+    parameters = [Ip2_FrictViscoMat_FrictViscoMat_FrictViscoPhys(
+        kn=by_pair(kn, tool_kn), kRatio=by_pair(kt / kn, tool_kt / tool_kn),
+        frictAngle=by_pair(math.atan(mu), math.atan(tool_mu)))]
+    _put_engines([Bo1_Sphere_Aabb(), Bo1_Facet_Aabb()], [Ig2_Sphere_Sphere_ScGeom(), Ig2_Facet_Sphere_ScGeom()],
+                 parameters, [Law2_ScGeom_FrictViscoPhys_CundallStrackVisco(traceEnergy=True)], damping)
+
+
+def _put_engines(bounds, geometry, parameters, laws, damping):
     O.engines = [
         ForceResetter(),
-        InsertionSortCollider([Bo1_Sphere_Aabb()], avoidSelfInteractionMask=2),
-        InteractionLoop([Ig2_Sphere_Sphere_ScGeom()], parameters, laws),
+        InsertionSortCollider(bounds, avoidSelfInteractionMask=2),
+        InteractionLoop(geometry, [Ip2_JCFpmMat_JCFpmMat_JCFpmPhys(cohesiveTresholdIteration=1), *parameters],
+                        [Law2_ScGeom_JCFpmPhys_JointedCohesiveFrictionalPM(neverErase=True), *laws]),
         NewtonIntegrator(damping=damping)]
 
 
@@ -101,7 +128,7 @@ class ToolBodies:
 
     def __init__(self, tool, motion):
         self.tool, self.motion = tool, motion
-        self.count = tool.count
+        self.count, self.positions = tool.count, tool.positions
         self.body_of = {}
         self.ids = []
         self.pose = motion.pose(0.0)
@@ -115,7 +142,7 @@ class ToolBodies:
             index, body = next(iter(self.body_of.items()))
             state = O.bodies[body].state
             turned = Pose(np.zeros(2), 2 * math.atan2(state.ori[2], state.ori[3]))
-            self.pose = Pose(np.array(state.pos)[:2] - turned.of(self.tool.positions[[index]])[0], turned.turn)
+            self.pose = Pose(np.array(state.pos)[:2] - turned.of(self.positions[[index]])[0], turned.turn)
 
     def aim(self, time, period):
         """Lead every particle along the chord from where it is to where the motion has it `period` s after `time`.
@@ -123,7 +150,7 @@ class ToolBodies:
         Between two visits a particle is off its path by at most v w period^2 / 8, and no error ever builds up.
         """
         goal = self.motion.pose(time + period)
-        places = goal.of(self.tool.positions[list(self.body_of)]).tolist()
+        places = goal.of(self.positions[list(self.body_of)]).tolist()
         for (index, body), (x, y) in zip(self.body_of.items(), places):
             state = O.bodies[body].state
             here = state.pos
@@ -133,26 +160,42 @@ class ToolBodies:
     def add(self, indices):
         """Put particles `indices` of the tool into YADE, where the tool is now."""
         self.connect()
-        places = self.pose.of(self.tool.positions[np.asarray(indices, int)]).tolist()
+        places = self.pose.of(self.positions[np.asarray(indices, int)]).tolist()
         origin, velocity = self._moving_point()
         for index, (x, y) in zip(indices, places):
-            body = finite_disc((x, y), float(self.tool.radii[index]), material="steel", mask=TOOL_MASK, mass=0.0,
-                               inertia=0.0)
+            body = self._body(int(index), x, y)
             state = body.state
             state.blockedDOFs = "xyzXYZ"
-            self.velocities[int(index)] = (velocity[0] - self.spin * (y - origin[1]),
-                                           velocity[1] + self.spin * (x - origin[0]))
-            state.vel, state.angVel = (*self.velocities[int(index)], 0.0), (0.0, 0.0, self.spin)
+            self._set_off(int(index), state, x, y, origin, velocity)
+            state.angVel = (0.0, 0.0, self.spin)
             state.ori = Quaternion((0, 0, 1), self.pose.turn)
             self.body_of[int(index)] = O.bodies.append(body)
         self.ids = list(self.body_of.values())
+
+    def _body(self, index, x, y):
+        return finite_disc((x, y), float(self.tool.radii[index]), material="steel", mask=TOOL_MASK, mass=0.0, inertia=0.0)
+
+    def _set_off(self, index, state, x, y, origin, velocity):
+        """Move it as a point at (x, y) of a body does whose `origin` has this velocity."""
+        self.velocities[index] = (velocity[0] - self.spin * (y - origin[1]), velocity[1] + self.spin * (x - origin[0]))
+        state.vel = (*self.velocities[index], 0.0)
+
+    def velocity_at(self, index, interaction, tool_first):
+        """(vx, vy, vz) m/s of the tool where this contact of particle `index` is."""
+        vx, vy = self.velocities[index]
+        if self.spin:
+            # The contact point turns with the tool about its particle's centre.
+            geom = interaction.geom
+            arm = self.spin * (self.tool.radii[index] - 0.5 * geom.penetrationDepth) * (1 if tool_first else -1)
+            vx, vy = vx - arm * geom.normal[1], vy + arm * geom.normal[0]
+        return vx, vy, 0.0
 
     def _moving_point(self):
         """A point of the tool, m, and its velocity, m/s."""
         if not self.body_of:
             return self.pose.offset, self.motion.velocity(0.0)
         index = next(iter(self.body_of))
-        return self.pose.of(self.tool.positions[[index]])[0], self.velocities[index]
+        return self.pose.of(self.positions[[index]])[0], self.velocities[index]
 
     def erase(self, indices):
         """Take particles out of YADE. -> strain energy (J) of the contacts that vanish with them."""
@@ -179,6 +222,76 @@ class ToolBodies:
         self.ids = list(self.body_of.values())
         self.pose = Pose(state["offset"].copy(), float(state["turn"]))
         self.velocities = {}
+
+
+class FacetBodies(ToolBodies):
+    """A tool's facets in YADE, led like particles; each is the triangle that facet_tool.corners gives.
+
+    tool: a facet_tool.FacetTool. `positions` (m, 2) and `heights` (m,) m are the bodies' centres in the tool's frame as
+    they are in YADE, `local` (m, 3, 3) m their corners about them; `reshape` brings all to the tool's present shape.
+    """
+
+    def __init__(self, tool, motion):
+        self.tool, self.motion, self.count = tool, motion, tool.count
+        self.body_of, self.ids = {}, []
+        self.pose = motion.pose(0.0)
+        self.velocities, self.spin = {}, motion.spin
+        self._measure()
+
+    def _measure(self):
+        triangles = corners(self.tool.boundary.vertices, self.tool.boundary.facets)
+        centres = incentres(triangles)
+        self.positions, self.heights, self.local = centres[:, :2], centres[:, 2], triangles - centres[:, None]
+
+    def _body(self, index, x, y):
+        body = utils.facet([(0, 0, 0), (1, 0, 0), (0, 1, 0)], material="steel", mask=TOOL_MASK)
+        self._form(body, index, x, y)
+        return body
+
+    def _form(self, body, index, x, y):
+        body.shape.setVertices(*[Vector3(corner) for corner in self.local[index].tolist()])
+        body.state.pos = (x, y, float(self.heights[index]))
+
+    def reshape(self):
+        """Give YADE's facets the shape that the tool's boundary has now, where the tool is now."""
+        self.connect()
+        before = np.column_stack([self.positions, self.heights, self.local.reshape(self.count, 9)])
+        origin, velocity = self._moving_point()
+        self._measure()
+        after = np.column_stack([self.positions, self.heights, self.local.reshape(self.count, 9)])
+        changed = np.flatnonzero((before != after).any(axis=1)).tolist()
+        for index, (x, y) in zip(changed, self.pose.of(self.positions[changed]).tolist()):
+            body = O.bodies[self.body_of[index]]
+            self._form(body, index, x, y)
+            self._set_off(index, body.state, x, y, origin, velocity)
+        # Facets may now reach where no contact was possible before: the collider is to run in the next step.
+        engines.yade_engine(NewtonIntegrator).maxVelocitySq = 0.0
+
+    def velocity_at(self, index, interaction, tool_first):
+        vx, vy = self.velocities[index]
+        if self.spin:
+            x, y, _ = interaction.geom.contactPoint - O.bodies[self.body_of[index]].state.pos
+            vx, vy = vx - self.spin * y, vy + self.spin * x
+        return vx, vy, 0.0
+
+    def overlap(self, interaction):
+        """Overlap (m) of a facet and a sphere as they lie."""
+        facet, sphere = O.bodies[interaction.id1], O.bodies[interaction.id2]
+        if not hasattr(sphere.shape, "radius"):
+            facet, sphere = sphere, facet
+        state = facet.state
+        place = state.ori.conjugate() * (sphere.state.pos - state.pos)
+        nearest = nearest_on_triangle(np.array(place), np.array(facet.shape.vertices))
+        return sphere.shape.radius - float(np.linalg.norm(nearest - np.array(place)))
+
+    def state(self):
+        return {**super().state(), "positions": self.positions.copy(), "heights": self.heights.copy(),
+                "local": self.local.copy()}
+
+    def restore(self, state):
+        super().restore(state)
+        for name in ("positions", "heights", "local"):
+            setattr(self, name, state[name].copy())
 
 
 class Scene:

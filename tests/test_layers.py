@@ -32,7 +32,7 @@ def test_rooms_import_only_what_lies_below(room):
 
 
 def test_kernels_need_numpy_and_scipy_only():
-    standard = {"ast", "collections", "csv", "dataclasses", "functools", "math", "typing", "warnings"}
+    standard = {"ast", "collections", "csv", "dataclasses", "functools", "heapq", "math", "typing", "warnings"}
     for file in sorted((ROOT / "rockwear/kernels").glob("*.py")):
         for name in imports(file):
             assert name.split(".")[0] in standard | {"numpy", "scipy", "rockwear"}, f"{file.name} imports {name}"

@@ -11,6 +11,7 @@ import sys
 sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(sys.argv[0]))))
 
 from rockwear import run  # noqa: E402
-from rockwear.cutting import PARAMETERS, Cutting  # noqa: E402
+from rockwear.cutting import PARAMETERS  # noqa: E402
+from rockwear.facet_cutting import OF_FACETS, TOOL, cut  # noqa: E402
 
-run.main("test_tooth", PARAMETERS, Cutting)
+run.main("test_tooth", [*PARAMETERS, TOOL, *OF_FACETS], cut)

@@ -94,18 +94,21 @@ def law_functor(kind):
     return next(functor for functor in yade_engine(InteractionLoop).lawDispatcher.functors if isinstance(functor, kind))
 
 
-def contact_energy(interactions):
+def overlap_of_spheres(interaction):
+    """Overlap (m) of two spheres as they lie; of other shapes, as YADE last found it."""
+    first, second = O.bodies[interaction.id1], O.bodies[interaction.id2]
+    if not (isinstance(first.shape, Sphere) and isinstance(second.shape, Sphere)):
+        return interaction.geom.penetrationDepth
+    # A loaded scene has no penetrationDepth before its first step.
+    return first.shape.radius + second.shape.radius - (second.state.pos - first.state.pos).norm()
+
+
+def contact_energy(interactions, overlap=overlap_of_spheres):
     """Strain energy (J) of contacts that are no bonds, sum of kn un^2/2 + Ft^2/2kt; dashpots store none.
 
     (YADE's own elasticEnergy() needs a step since the scene was loaded, and counts the dashpots' force as a spring's.)
     """
     energy = 0.0
     for i in interactions:
-        first, second = O.bodies[i.id1], O.bodies[i.id2]
-        if isinstance(first.shape, Sphere) and isinstance(second.shape, Sphere):
-            # A loaded scene has no penetrationDepth before its first step.
-            overlap = first.shape.radius + second.shape.radius - (second.state.pos - first.state.pos).norm()
-        else:
-            overlap = i.geom.penetrationDepth
-        energy += 0.5 * (i.phys.kn * max(overlap, 0.0)**2 + i.phys.shearForce.squaredNorm() / i.phys.ks)
+        energy += 0.5 * (i.phys.kn * max(overlap(i), 0.0)**2 + i.phys.shearForce.squaredNorm() / i.phys.ks)
     return energy

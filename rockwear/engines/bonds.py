@@ -449,8 +449,12 @@ class RockFriction(Engine):
         self.sampled = 0.0
         self.booked = 0.0
 
+    def account(self):
+        """YADE's account of the friction between rock particles."""
+        return law_functor(Law2_ScGeom_FrictPhys_CundallStrack)
+
     def connect(self):
-        self.law = law_functor(Law2_ScGeom_FrictPhys_CundallStrack)
+        self.law = self.account()
         self.find_contacts()
 
     def find_contacts(self):
@@ -529,4 +533,4 @@ class RockFriction(Engine):
     def restore(self, state):
         self.work = state["work"].copy()
         self.sampled, self.booked = float(state["sampled"]), float(state["booked"])
-        law_functor(Law2_ScGeom_FrictPhys_CundallStrack).initPlasticDissipation(float(state["dissipation"]))
+        self.account().initPlasticDissipation(float(state["dissipation"]))

@@ -32,10 +32,14 @@ class ToolContact(Engine):
         self.slid = {need: np.zeros(tool.count) for need in dict.fromkeys((WORK, *needs))}
         self.touching = {}
         self.booked = self.work_done = self.dashpot_dissipated = 0.0
-        self.impulse = np.zeros(2)
+        self.impulse = np.zeros(3)
+
+    def account(self):
+        """YADE's account of the friction between tool and rock."""
+        return law_functor(Law2_ScGeom_FrictViscoPhys_CundallStrackVisco)
 
     def connect(self):
-        self.law = law_functor(Law2_ScGeom_FrictViscoPhys_CundallStrackVisco)
+        self.law = self.account()
         self.collider = yade_engine(InsertionSortCollider)
         self.look_around()
 
@@ -68,17 +72,12 @@ class ToolContact(Engine):
         normal, shear = phys.normalForce, phys.shearForce
         # YADE puts N + S on the second body and its opposite on the first.
         sign = -elapsed if tool_first else elapsed
-        x, y = (normal[0] + shear[0]) * sign, (normal[1] + shear[1]) * sign
+        x, y, z = (normal[0] + shear[0]) * sign, (normal[1] + shear[1]) * sign, (normal[2] + shear[2]) * sign
         self.impulse[0] += x
         self.impulse[1] += y
-        vx, vy = self.tool.velocities[index]
-        if self.tool.spin:
-            # The contact point turns with the tool about its particle's centre.
-            geom = interaction.geom
-            arm = self.tool.tool.radii[index] - 0.5 * geom.penetrationDepth
-            turning = self.tool.spin * (arm if tool_first else -arm)
-            vx, vy = vx - turning * geom.normal[1], vy + turning * geom.normal[0]
-        self.work_done -= x * vx + y * vy
+        self.impulse[2] += z
+        vx, vy, vz = self.tool.velocity_at(index, interaction, tool_first)
+        self.work_done -= x * vx + y * vy + z * vz
         self.touching[index, rock] = self.touching.get((index, rock), 0.0) + elapsed
         if phys.cn > 0:
             dashpot = phys.normalViscous
@@ -122,8 +121,8 @@ class ToolContact(Engine):
         return taken
 
     def take_impulse(self):
-        """(2,) impulse (N s) on the tool since the last call."""
-        taken, self.impulse = self.impulse, np.zeros(2)
+        """(3,) impulse (N s) on the tool since the last call."""
+        taken, self.impulse = self.impulse, np.zeros(3)
         return taken
 
     def elastic_energy(self):
@@ -150,7 +149,7 @@ class ToolContact(Engine):
         self.touching = {(int(i), int(j)): t for i, j, t in state["touching"].tolist()}
         for name in ("booked", "work_done", "dashpot_dissipated"):
             setattr(self, name, float(state[name]))
-        law_functor(Law2_ScGeom_FrictViscoPhys_CundallStrackVisco).initPlasticDissipation(float(state["dissipation"]))
+        self.account().initPlasticDissipation(float(state["dissipation"]))
 
 
 class Wear(Engine):

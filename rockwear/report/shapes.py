@@ -74,6 +74,15 @@ def _cross(a, b):
     return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
 
 
+def loop(facets):
+    """(m,) numbers of the corners of the one polygon that segments (m, 2) make, in order."""
+    following = dict(facets.tolist())
+    corners = [int(facets[0, 0])]
+    while following[corners[-1]] != corners[0]:
+        corners.append(following[corners[-1]])
+    return np.array(corners)
+
+
 def distance_to(points, polygons, spacing):
     """(n,) m from each point to the nearest side of the polygons, to within `spacing`; nan without any."""
     if not polygons:

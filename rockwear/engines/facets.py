@@ -1,0 +1,266 @@
+"""A tool of facets in YADE: contacts that pass from facet to facet, and wear that moves the vertices."""
+import math
+
+import numpy as np
+from yade import Law2_ScGeom_FrictViscoPhys_CundallStrackVisco, O, Vector3
+
+from ..kernels.boundary import area_vectors
+from ..kernels.wear_laws import WORK
+from ..kernels.worn_boundary import WornAway
+from . import Engine, contact_energy, law_functor
+from .bonds import RockFriction
+from .record import RunEnded
+from .wear import ToolContact
+
+MUTE = 2.0**-100
+"""Factor on the stiffness of a contact that does not count: not zero, which YADE divides by, and exact to undo."""
+SILENT = 1e-9
+"""N/m, stiffness below which a contact is one of these. So YADE's own scene says which are muted, saved ones too."""
+FACE = 1 - 1e-13
+"""Cosine between a contact's and its facet's normal above which the facet is touched inside, not at its rim."""
+EVEN = 1e-9
+"""Two contacts are equally deep if their depths differ by less than this part of the particle's radius."""
+
+
+class FacetContact(ToolContact):
+    """ToolContact of a tool of facets, where a particle at an edge touches several facets and yet only one surface.
+
+    Of the contacts of one particle, one at the rim of its facet counts for nothing as long as a neighbouring facet is
+    touched more deeply: it is the same contact seen from next door. It is muted. When the particle goes on to that
+    facet, the contact there takes over the shear force, turned to the new normal, so that neither the history nor the
+    energy of the sliding contact is lost. Two facets of an inner corner are both touched inside, and both count.
+
+    YADE's account of friction is one for rock and tool here. The tool's part is counted at each contact as YADE does:
+    what the law cut off the trial force, over the stiffness, times the force that is left. To be visited in every step.
+    """
+
+    def __init__(self, *, neighbours, **common):
+        super().__init__(**common)
+        self.neighbours = neighbours
+        self.springs = {}
+        self.dissipated = 0.0
+
+    def account(self):
+        return ToolsAccount(self)
+
+    def connect(self):
+        super().connect()
+        self.functor = super().account()
+        self._note_springs()
+
+    def look_around(self):
+        super().look_around()
+        groups = {}
+        for contact in self.possible:
+            groups.setdefault(contact[2], []).append(contact)
+        self.shared = [(rock, group) for rock, group in sorted(groups.items()) if len(group) > 1]
+
+    def act(self):
+        if self.collider.numAction != self.collided:
+            self.look_around()
+        successions = [pair for rock, group in self.shared for pair in self._judge(rock, group)]
+        self.dissipated += math.fsum(self._dissipation(contact) for contact in self.possible if contact[0].isReal)
+        super().act()
+        for old, new in successions:
+            self._hand_over(old, new)
+        self._note_springs()
+
+    def _note_springs(self):
+        # YADE hands out its own vectors, which change with the next step.
+        self.springs = {(index, rock): Vector3(interaction.phys.shearForce)
+                        for interaction, index, rock, _ in self.possible if interaction.isReal}
+
+    def _dissipation(self, contact):
+        """J that the law took from this contact's friction in this step."""
+        interaction, index, rock, _ = contact
+        if muted(contact):
+            return 0.0
+        phys, geom = interaction.phys, interaction.geom
+        left = phys.shearForce.norm()
+        trial = geom.shearInc * -phys.ks
+        before = self.springs.get((index, rock))
+        if before is not None and before.squaredNorm() > 0:
+            turned = before - geom.normal * before.dot(geom.normal)
+            trial += turned * (before.norm() / turned.norm())
+        return max(trial.norm() - left, 0.0) * left / phys.ks
+
+    def _judge(self, rock, group):
+        """Silence the contacts of a particle that have just come to be and count for nothing; wake what counts and has
+        no predecessor. -> pairs (contact, its successor)."""
+        real = [contact for contact in group if contact[0].isReal]
+        if len(real) < 2:
+            for contact in real:
+                self._wake(contact)
+            return []
+        standing, doubled = self._ranked(rock, real)
+        ending = [contact for contact in doubled if not muted(contact)]
+        successions = []
+        for new in standing:
+            if muted(new):
+                old = next((contact for contact in ending if contact[1] in self.neighbours[new[1]]), None)
+                if old is None:
+                    self._wake(new)
+                else:
+                    ending.remove(old)
+                    successions.append((old, new))
+        for contact in ending:
+            self._cancel(contact)
+            self._silence(contact)
+        return successions
+
+    def _ranked(self, rock, real):
+        """Contacts that count, and those that a neighbouring facet's deeper contact makes double."""
+        even = EVEN * O.bodies[rock].shape.radius
+        rows = []
+        for contact in real:
+            # Of equally deep ones the one inside its facet stands first, then the one that counts already.
+            rows.append((-round(contact[0].geom.penetrationDepth / even), not self._inside(contact),
+                         muted(contact), contact[1], contact))
+        rows.sort(key=lambda row: row[:4])
+        standing, doubled, before = [], [], []
+        for _, outside, _, index, contact in rows:
+            normal = contact[0].geom.normal
+            same = any(index in self.neighbours[other[1]] and (outside or normal.dot(other[0].geom.normal) > FACE)
+                       for other in before)
+            (doubled if same else standing).append(contact)
+            before.append(contact)
+        return standing, doubled
+
+    def _inside(self, contact):
+        body = O.bodies[self.tool.body_of[contact[1]]]
+        return abs(contact[0].geom.normal.dot(body.state.ori * body.shape.normal)) > FACE
+
+    def _wake(self, contact):
+        if muted(contact):
+            phys = contact[0].phys
+            phys.kn, phys.ks, phys.cn = phys.kn / MUTE, phys.ks / MUTE, phys.cn / MUTE
+
+    def _cancel(self, contact):
+        """Take the contact's force off the particle in this step, and its friction off YADE's account."""
+        self.functor.initPlasticDissipation(self.functor.plasticDissipation() - self._dissipation(contact))
+        interaction, _, rock, tool_first = contact
+        force = interaction.phys.normalForce + interaction.phys.shearForce
+        force = -force if tool_first else force
+        O.forces.addF(rock, force)
+        O.forces.addT(rock, (interaction.geom.contactPoint - O.bodies[rock].state.pos).cross(force))
+
+    def _silence(self, contact):
+        phys = contact[0].phys
+        phys.kn, phys.ks, phys.cn = phys.kn * MUTE, phys.ks * MUTE, phys.cn * MUTE
+        phys.normalForce = phys.shearForce = phys.normalViscous = Vector3.Zero
+
+    def _hand_over(self, old, new):
+        shear = Vector3(old[0].phys.shearForce)
+        size, normal = shear.norm(), new[0].geom.normal
+        self._silence(old)
+        self._wake(new)
+        turned = shear - normal * shear.dot(normal)
+        if size > 0 and turned.norm() > 0:
+            if old[3] != new[3]:
+                turned = -turned
+            new[0].phys.shearForce = turned * (size / turned.norm())
+
+    def elastic_energy(self):
+        return contact_energy((i for body in self.tool.ids for i in O.interactions.withBody(body)), self.tool.overlap)
+
+
+def muted(contact):
+    """Whether this entry (interaction, facet, particle, facet first) of the contacts is muted."""
+    return contact[0].phys.kn < SILENT
+
+
+class ToolsAccount:
+    """The tool's part of the one account of friction, with the names of YADE's law."""
+
+    def __init__(self, contact):
+        self.contact = contact
+
+    def plasticDissipation(self):
+        """J so far."""
+        return self.contact.dissipated
+
+    def initPlasticDissipation(self, value):
+        """Count on from `value` J."""
+        self.contact.dissipated = value
+
+
+class RocksAccount:
+    """The rest of it, the rock's."""
+
+    def __init__(self, contact):
+        self.contact, self.functor = contact, law_functor(Law2_ScGeom_FrictViscoPhys_CundallStrackVisco)
+
+    def plasticDissipation(self):
+        """J so far."""
+        return self.functor.plasticDissipation() - self.contact.dissipated
+
+    def initPlasticDissipation(self, value):
+        """Count on from `value` J; the tool's part first."""
+        self.functor.initPlasticDissipation(value + self.contact.dissipated)
+
+
+class RockFrictionBesideFacets(RockFriction):
+    """RockFriction where the rock's contacts are of the kind of the tool's. contact: the FacetContact, restored before."""
+
+    def __init__(self, *, contact, **common):
+        super().__init__(**common)
+        self.contact = contact
+
+    def account(self):
+        return RocksAccount(self.contact)
+
+
+class FacetWear(Engine):
+    """Wear of a tool of facets: what its contacts wear off each facet becomes a motion of the vertices (R 2.5).
+
+    contact: the FacetContact that says where the tool slides; boundary: kernels.worn_boundary.WornBoundary; tool: its
+    bodies; law: of kernels.wear_laws, accelerated; hardness: Pa; work_fraction: the part of the friction work that
+    counts as the tool's (R 2-53 takes one half, Archard's law all of it); reshape: False leaves the shape as it is, and
+    only `worn`, the volume (m,) m3 worn off each facet, grows.
+    """
+
+    name = "wear"
+
+    def __init__(self, *, contact, boundary, tool, law, hardness, work_fraction=1.0, reshape=True):
+        super().__init__()
+        self.contact, self.boundary, self.tool, self.law, self.hardness = contact, boundary, tool, law, hardness
+        self.work_fraction, self.reshape = work_fraction, reshape
+        self.worn = np.zeros(len(boundary.facets))
+        self.contact_energy_removed = self.work_used = 0.0
+
+    def act(self):
+        slid = self.contact.take_slid()
+        if not slid[WORK].any():
+            return
+        self.work_used += float(slid[WORK].sum())
+        areas = np.linalg.norm(area_vectors(self.boundary.vertices, self.boundary.facets), axis=1)
+        volume = self.work_fraction * self.law.volume(slid, self.hardness, areas)
+        self.worn += volume
+        if not self.reshape:
+            return
+        stored = self.contact.elastic_energy()
+        try:
+            moved = self.boundary.wear(volume)
+        except WornAway as end:
+            raise RunEnded(f"the tool is worn away at t = {O.time:g} s: {end}", True) from None
+        if moved:
+            self.tool.reshape()
+            self.contact_energy_removed += stored - self.contact.elastic_energy()
+
+    @property
+    def volume(self):
+        """m3 that the wear law has worn so far."""
+        return float(self.worn.sum())
+
+    def state(self):
+        return {"contact_energy_removed": self.contact_energy_removed, "work_used": self.work_used,
+                "worn": self.worn.copy(), "boundary": self.boundary.state()}
+
+    def restore(self, state):
+        self.contact_energy_removed, self.work_used = float(state["contact_energy_removed"]), float(state["work_used"])
+        self.worn = state["worn"].copy()
+        self.boundary.restore(state["boundary"])
+
+    def log(self):
+        return {"mass_lost": (1 - self.boundary.volume / self.boundary.first_volume, "-"),
+                "worn_volume": (self.volume, "m3")}

@@ -1,0 +1,102 @@
+"""The cut with a tool of segments in place of particles (M 8.1), worn by moving its vertices (R 2.5)."""
+from dataclasses import replace
+
+import numpy as np
+from yade import FrictViscoMat
+
+from . import scene, vtk
+from .cutting import Cutting
+from .cutting import parameters as cutting_parameters
+from .engines.facets import FacetContact, FacetWear, RockFrictionBesideFacets
+from .facet_tool import FacetTool
+from .kernels.checks import require
+from .parameters import Parameter, above_zero, choice, flag, number
+
+OF_FACETS = [
+    Parameter("segment", 1e-3, "m", above_zero, "longest segment of the tool's outline", "ours"),
+    Parameter("work_fraction", 1.0, "", number(0, 1), "part of the friction work that wears the tool", "M 6.9; R 2-53: 0.5"),
+    Parameter("reshape", True, "", flag, "move the vertices; false: note where wear falls and keep the shape"),
+]
+
+
+TOOL = Parameter("tool", "particles", "", choice("particles", "segments"), "what the tool is made of", "M 8.2, M 8.1")
+
+
+def cut(values):
+    """The cut with the tool that `values` chooses."""
+    return (FacetCutting if values["tool"] == "segments" else Cutting)(values)
+
+
+def parameters(**defaults):
+    """Those of the cut, without heat by default, and those of the segments."""
+    own = {p.name for p in OF_FACETS}
+    common = cutting_parameters(**{"heat": False, **{k: v for k, v in defaults.items() if k not in own}})
+    return common + [replace(p, default=defaults.get(p.name, p.default)) for p in OF_FACETS]
+
+
+class FacetCutting(Cutting):
+    """Cutting with a tool of segments. Its hardness is that at the tool's first temperature: it has no heat."""
+
+    loose_rock, put_loop = FrictViscoMat, staticmethod(scene.put_loop_with_facets)
+
+    def __init__(self, values):
+        require(not values["heat"], "heat", "true", "false: heat is for a tool of particles")
+        super().__init__(values)
+        require(values["sampling_period"] == 1, "sampling_period", values["sampling_period"], "1 for a tool of segments", "steps")
+
+    def _make_tool(self, vertices):
+        return FacetTool.of_outline(vertices, segment=self.v.segment, density=self.v.tool_density)
+
+    def _make_tool_engines(self, motion):
+        v, tool = self.v, self.tool
+        self.bodies = scene.FacetBodies(tool, self.motion)
+        self.contact = FacetContact(tool=self.bodies, motion=motion, needs=self.wear_law.needs, neighbours=tool.neighbours)
+        self.rock_friction = RockFrictionBesideFacets(contact=self.contact, bonds=self.bonds, motion=motion)
+        self.wear = FacetWear(contact=self.contact, boundary=tool.boundary, tool=self.bodies, law=self.wear_law,
+                              hardness=self.hardness(v.tool_temperature), work_fraction=v.work_fraction,
+                              reshape=v.reshape)
+        self.profile = None
+
+    def _put_tool(self):
+        self.bodies.add(range(self.tool.count))
+
+    def _put_tool_back(self):
+        self.bodies.reshape()
+
+    # ---- books
+
+    def mass_audit(self):
+        """kg per metre of thickness: the volume book of the boundary times the tool's density."""
+        book = self.tool.boundary.volume_balance()
+        return {"initial": self.tool.area * self.tool.density, **{k: v * self.tool.density for k, v in book.items()}}
+
+    # ---- what a run's folder shows
+
+    def model(self):
+        rock, tool = self.rock, self.tool
+        return {"rock_radii": rock.radii, "rock_supported": rock.supported, "bonds": rock.pairs,
+                "box": np.array([rock.width, rock.height]), "tool_vertices": tool.first, "tool_facets": tool.boundary.facets,
+                "tool_protected": tool.boundary.protected}
+
+    def snapshot(self):
+        rock = self.rock
+        self.bodies.connect()
+        return {"time": self.time, "stage": self.stage, "rock_positions": rock.current_positions(),
+                "broken_bonds": np.bincount(rock.pairs[self.bonds.status != 0].ravel(), minlength=rock.count),
+                "status": self.bonds.status, "tool_offset": self.bodies.pose.offset, "tool_turn": self.bodies.pose.turn,
+                "tool_vertices": self.tool.boundary.vertices, "worn_volume": self.wear.worn}
+
+    def write_vtk(self, folder, number):
+        """rock.NNNN.vtk and tool.NNNN.vtk: diameter, broken bonds; the tool's vertices."""
+        shot = self.snapshot()
+        vtk.write(folder / f"rock.{number:04d}.vtk", shot["rock_positions"],
+                  {"diameter": 2 * self.rock.radii, "broken_bonds": shot["broken_bonds"]})
+        vtk.write(folder / f"tool.{number:04d}.vtk", self.bodies.pose.of(shot["tool_vertices"]),
+                  {"moved": self.tool.boundary.depth(self.tool.first)})
+
+    def _worn_words(self):
+        return f"{100 * self.wear.log()['mass_lost'][0]:.2f} % of the tool worn"
+
+    def _worn_results(self):
+        return {**self.wear.log(), "facets": (self.tool.count, "-"),
+                "deepest_wear": (float(self.tool.boundary.depth(self.tool.first).max()), "m")}

@@ -1,0 +1,233 @@
+"""Closed boundaries of facets: segments in the plane, triangles in space; their measures, checks, refinement.
+
+A boundary is vertices (n, d) in m and facets (m, d) of vertex numbers, d = 2 or 3. The body lies to the left of a
+segment's direction; a triangle's corners run counter-clockwise seen from outside. In the plane areas are lengths and
+volumes are areas, both per metre of thickness.
+"""
+import heapq
+import math
+
+import numpy as np
+from scipy.spatial import Delaunay, cKDTree
+
+from .checks import positive, require
+from .outline import check_polygon, inside, signed_distance
+
+
+def area_vectors(vertices, facets):
+    """(m, d) outward normal of each facet times its area."""
+    corners = vertices[facets]
+    along = corners[:, 1] - corners[:, 0]
+    if vertices.shape[1] == 2:
+        return np.column_stack([along[:, 1], -along[:, 0]])
+    return 0.5 * np.cross(along, corners[:, 2] - corners[:, 0])
+
+
+def volume(vertices, facets):
+    """Enclosed volume, the sum of det(corners) / d! over the facets: positive if the normals look outwards."""
+    corners = vertices[facets] - vertices[facets].mean(axis=(0, 1))
+    return float(np.linalg.det(corners).sum()) / (2 if vertices.shape[1] == 2 else 6)
+
+
+def altitudes(vertices, facets):
+    """(m,) smallest altitude of each triangle, or the length of each segment."""
+    size = np.linalg.norm(area_vectors(vertices, facets), axis=1)
+    if vertices.shape[1] == 2:
+        return size
+    corners = vertices[facets]
+    return 2 * size / np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
+
+
+def ridges(facets):
+    """(k, d - 1) what two facets share, one row each time a facet has it, in the facet's own sense.
+
+    Edges (i, j) of triangles as they are run through; of a segment (i, j) its ends, -1 - i for the beginning and j for
+    the end, so that the opposite sense is the opposite row in both cases.
+    """
+    if facets.shape[1] == 2:
+        return np.concatenate([-1 - facets[:, :1], facets[:, 1:]])
+    return np.concatenate([facets[:, [0, 1]], facets[:, [1, 2]], facets[:, [2, 0]]])
+
+
+def _opposite(rows):
+    return -1 - rows if rows.shape[1] == 1 else rows[:, ::-1]
+
+
+def check_boundary(vertices, facets, name="boundary"):
+    """(vertices, facets) as float and int arrays, vertices that no facet uses left out.
+
+    Raises ParameterError (under `name`) unless the vertices are finite, no facet is degenerate, every edge (in the
+    plane: end) of a facet is that of exactly one other, run through in the opposite sense, and the volume is positive.
+    """
+    vertices, facets = np.array(vertices, float), np.array(facets, int)
+    d = vertices.shape[1] if vertices.ndim == 2 else 0
+    require(d in (2, 3) and facets.ndim == 2 and facets.shape[1] == d, name,
+            f"{vertices.shape} vertices and {facets.shape} facets", "(n, 2) and (m, 2), or (n, 3) and (m, 3)")
+    require(len(facets) > d, name, f"{len(facets)} facets", f"at least {d + 1} facets")
+    require(0 <= facets.min() and facets.max() < len(vertices), name, f"vertex {facets.max()}", "made of known vertices")
+    require(np.isfinite(vertices).all(), name, f"{len(vertices)} vertices", "finite", "m")
+    used, facets = np.unique(facets, return_inverse=True)
+    vertices, facets = vertices[used], facets.reshape(-1, d)
+    longest = np.linalg.norm(np.ptp(vertices, axis=0))
+    flat = np.flatnonzero(altitudes(vertices, facets) <= 1e-9 * longest) if longest > 0 else [0]
+    require(len(flat) == 0, name, f"facet {flat[0] if len(flat) else ''}", "free of degenerate facets (no area)")
+    rows = ridges(facets)
+    distinct, count = np.unique(rows, axis=0, return_counts=True)
+    ways = {tuple(row) for row in distinct.tolist()}
+    single = [row for row in distinct.tolist() if tuple(_opposite(np.array([row]))[0].tolist()) not in ways]
+    turned = int((count > 1).sum())
+    require(turned == 0, name, f"{turned} edges run through twice in one sense",
+            "of one orientation: some facets are flipped or doubled")
+    require(not single, name, f"{len(single)} open edges", "closed: it has holes")
+    require(volume(vertices, facets) > 0, name, f"{len(facets)} facets", "oriented with its normals outwards")
+    return vertices, facets
+
+
+def crossings(vertices, facets):
+    """How many pairs of segments cross that have no end in common."""
+    middle = vertices[facets].mean(axis=1)
+    along = vertices[facets[:, 1]] - vertices[facets[:, 0]]
+    # Two segments that meet have middles no further apart than the longest is long.
+    reach = float(np.linalg.norm(along, axis=1).max())
+    i, j = cKDTree(middle).query_pairs(reach * (1 + 1e-9), output_type="ndarray").T
+    apart = (facets[i][:, :, None] != facets[j][:, None, :]).all(axis=(1, 2))
+    i, j = i[apart], j[apart]
+    gap = vertices[facets[j, 0]] - vertices[facets[i, 0]]
+
+    def cross(a, b):
+        return a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+
+    det = cross(along[i], along[j])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        s, t = cross(gap, along[j]) / det, cross(gap, along[i]) / det
+        return int(np.sum((s >= 0) & (s <= 1) & (t >= 0) & (t <= 1)))
+
+
+def nearest_on_triangle(point, triangle):
+    """The point (3,) of a triangle (3, 3) that is nearest to `point` (3,)."""
+    a, b, c = triangle
+    normal = np.cross(b - a, c - a)
+    foot = point - normal * (normal @ (point - a)) / (normal @ normal)
+    sides = [(a, b), (b, c), (c, a)]
+    if all(np.cross(q - p, foot - p) @ normal >= 0 for p, q in sides):
+        return foot
+    rim = [p + (q - p) * np.clip((point - p) @ (q - p) / ((q - p) @ (q - p)), 0, 1) for p, q in sides]
+    return min(rim, key=lambda place: np.sum((place - point)**2))
+
+
+def segments(polygon):
+    """The boundary of a polygon (k, 2): its own corners, a segment a side."""
+    corners = check_polygon(polygon)
+    number = np.arange(len(corners))
+    return corners, np.column_stack([number, np.roll(number, -1)])
+
+
+def prism(polygon, width, size):
+    """A polygon (k, 2) in x and y drawn out to `width` m along z, centred at z = 0: triangles of about `size` m.
+
+    Corners of the polygon nearer than half the size to one another are merged, but for sharp ones (40 degrees).
+    Raises ParameterError for a size too coarse for the polygon, or not positive.
+    """
+    rim = _in_order(*refine(*segments(_thinned(check_polygon(polygon), positive("size", size, "m"))), size))
+    k, layers = len(rim), max(1, math.ceil(positive("width", width, "m") / size))
+    flat, face = _fill(rim, size)
+    heights = np.linspace(-0.5 * width, 0.5 * width, layers + 1)
+    points, facets = [np.column_stack([rim, np.full(k, z)]) for z in heights], []
+    i = np.arange(k)
+    j = np.roll(i, -1)
+    for low in range(0, layers * k, k):
+        facets += [np.column_stack([i, j, j + k]) + low, np.column_stack([i, j + k, i + k]) + low]
+    inner = flat[k:]
+    for low, z, triangles in ((0, heights[0], face[:, ::-1]), (layers * k, heights[-1], face)):
+        first = sum(map(len, points))
+        points.append(np.column_stack([inner, np.full(len(inner), z)]))
+        facets.append(np.where(triangles < k, triangles + low, triangles - k + first))
+    return np.vstack(points), np.vstack(facets)
+
+
+def _thinned(polygon, size):
+    """The polygon without corners that stand nearer than half of `size` to the last, unless they are sharp."""
+    along = np.roll(polygon, -1, axis=0) - polygon
+    along /= np.linalg.norm(along, axis=1)[:, None]
+    sharp = np.einsum("ij,ij->i", along, np.roll(along, 1, axis=0)) < math.cos(math.radians(40))
+    first = int(np.argmax(sharp))
+    kept = []
+    for number in np.roll(np.arange(len(polygon)), -first):
+        if not kept or sharp[number] or np.linalg.norm(polygon[number] - polygon[kept[-1]]) >= 0.5 * size:
+            kept.append(number)
+    return polygon[kept]
+
+
+def _in_order(vertices, facets):
+    """Corners (k, 2) of the one polygon that segments make."""
+    following, loop = dict(facets.tolist()), [0]
+    while following[loop[-1]] != 0:
+        loop.append(following[loop[-1]])
+    return vertices[loop]
+
+
+def _fill(rim, size):
+    """Triangles of the polygon `rim` and of points inside it, `size` apart: (n, 2) and (m, 3)."""
+    low, high = rim.min(axis=0), rim.max(axis=0)
+    x, y = np.meshgrid(np.arange(low[0], high[0], size), np.arange(low[1], high[1], size * math.sqrt(0.75)))
+    x[1::2] += 0.5 * size
+    grid = np.column_stack([x.ravel(), y.ravel()])
+    grid = grid[signed_distance(grid, rim) < -0.6 * size]
+    points = np.vstack([rim, grid])
+    triangles = Delaunay(points).simplices
+    corners = points[triangles]
+    p, q = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    turn = p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0]
+    triangles = np.where(turn[:, None] > 0, triangles, triangles[:, ::-1])[np.abs(turn) > 1e-9 * size * size]
+    triangles = triangles[inside(points[triangles].mean(axis=1), rim)]
+    sides = {(a, b) for t in triangles.tolist() for a, b in zip(t, t[1:] + t[:1])}
+    k = len(rim)
+    require(all((i, (i + 1) % k) in sides for i in range(k)), "size", size, "finer: its triangles cut the outline", "m")
+    return points, triangles
+
+
+def refine(vertices, facets, size):
+    """Cut edges in halves, the longest first, until none is longer than `size`: m, or a function of a point (d,) -> m.
+
+    A cut divides both facets at an edge, so that the boundary stays closed and its shape the same.
+    """
+    wanted = size if callable(size) else lambda point: size
+    points, facets = [np.asarray(p, float) for p in vertices], [tuple(f) for f in np.asarray(facets).tolist()]
+    owners = {}
+    for number, facet in enumerate(facets):
+        for edge in _edges(facet):
+            owners.setdefault(edge, set()).add(number)
+
+    def excess(edge):
+        i, j = edge
+        return -float(np.linalg.norm(points[i] - points[j])) / wanted(0.5 * (points[i] + points[j]))
+
+    queue = [(excess(edge), edge) for edge in owners]
+    heapq.heapify(queue)
+    while queue and queue[0][0] < -1 - 1e-9:
+        _, edge = heapq.heappop(queue)
+        i, j = edge
+        middle = len(points)
+        points.append(0.5 * (points[i] + points[j]))
+        fresh = set()
+        for number in sorted(owners.pop(edge)):
+            old = facets[number]
+            for side in _edges(old):
+                owners.get(side, set()).discard(number)
+            halves = [tuple(middle if v == away else v for v in old) for away in (j, i)]
+            facets[number] = halves[0]
+            facets.append(halves[1])
+            for place in (number, len(facets) - 1):
+                for side in _edges(facets[place]):
+                    if side not in owners:
+                        owners[side] = set()
+                        fresh.add(side)
+                    owners[side].add(place)
+        for side in sorted(fresh):
+            heapq.heappush(queue, (excess(side), side))
+    return np.array(points), np.array(facets)
+
+
+def _edges(facet):
+    pairs = [facet] if len(facet) == 2 else [facet[:2], facet[1:], (facet[2], facet[0])]
+    return [(min(pair), max(pair)) for pair in pairs]

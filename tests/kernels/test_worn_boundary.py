@@ -1,0 +1,318 @@
+"""Boundaries of facets: what is refused, and wear that takes exactly the demanded volume without a fold."""
+import math
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from rockwear.kernels.boundary import (altitudes, area_vectors, check_boundary, crossings, nearest_on_triangle, prism,
+                                       refine, segments, volume)
+from rockwear.kernels.checks import ParameterError
+from rockwear.kernels.outline import tooth
+from rockwear.kernels.worn_boundary import WornAway, WornBoundary
+
+SQUARE = np.array([[0, 0], [1, 0], [1, 1], [0, 1.0]]) * 0.01
+TOOTH = tooth(height=0.07, width=0.045, rake=0.0, clearance=math.radians(3), tip_radius=4e-3)
+
+
+def cube(size=1.3e-3):
+    return prism(SQUARE, 0.01, size)
+
+
+def ring(sides, radius=0.01):
+    angle = 2 * np.pi * np.arange(sides) / sides
+    return segments(radius * np.column_stack([np.cos(angle), np.sin(angle)]))
+
+
+def sphere(fineness=4, radius=0.01):
+    """An octahedron whose facets are cut in four again and again, its corners on the sphere."""
+    vertices = np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]], float)
+    facets = np.array([[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]])
+    for _ in range(fineness):
+        a, b, c = (vertices[facets[:, k]] for k in range(3))
+        corners = np.stack([a, b, c, a + b, b + c, c + a])
+        corners /= np.linalg.norm(corners, axis=2, keepdims=True)
+        parts = [corners[[0, 3, 5]], corners[[3, 1, 4]], corners[[5, 4, 2]], corners[[3, 4, 5]]]
+        triangles = np.concatenate([part.transpose(1, 0, 2) for part in parts])
+        vertices, number = np.unique(triangles.reshape(-1, 3).round(12), axis=0, return_inverse=True)
+        facets = number.reshape(-1, 3)
+    return vertices * radius, facets
+
+
+def sizes(boundary):
+    return np.linalg.norm(area_vectors(boundary.vertices, boundary.facets), axis=1)
+
+
+def exact_volume(vertices, facets):
+    """In rational numbers, from the very bits of the coordinates."""
+    points = [[Fraction(x) for x in point] for point in vertices.tolist()]
+    total = Fraction(0)
+    for facet in facets.tolist():
+        if len(facet) == 2:
+            (a, b), (c, d) = (points[i] for i in facet)
+            total += a * d - b * c
+        else:
+            a, b, c = (points[i] for i in facet)
+            total += (a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0])
+                      + a[2] * (b[0] * c[1] - b[1] * c[0]))
+    return total / math.factorial(len(facets[0]))
+
+
+def sharpest(boundary):
+    """Smallest cosine between the normals of neighbouring facets."""
+    normals = area_vectors(boundary.vertices, boundary.facets)
+    normals /= np.linalg.norm(normals, axis=1)[:, None]
+    a, b = boundary._joined.T
+    return float(np.einsum("ij,ij->i", normals[a], normals[b]).min())
+
+
+# ---- what is refused
+
+@pytest.mark.parametrize("make", [cube, lambda: ring(20), sphere, lambda: prism(TOOTH, 0.02, 3e-3)])
+def test_sound_boundaries_pass(make):
+    vertices, facets = check_boundary(*make())
+    assert volume(vertices, facets) > 0
+    assert float(exact_volume(vertices, facets)) == pytest.approx(volume(vertices, facets), rel=1e-12)
+
+
+def damaged(kind):
+    vertices, facets = cube()
+    if kind == "hole":
+        return vertices, facets[:-1]
+    if kind == "flipped":
+        facets[7] = facets[7, ::-1]
+    if kind == "inside out":
+        return vertices, facets[:, ::-1]
+    if kind == "flat":
+        vertices[facets[3, 0]] = vertices[facets[3, 1]]
+    if kind == "nan":
+        vertices[5, 1] = np.nan
+    if kind == "unknown":
+        facets[0, 0] = len(vertices)
+    return vertices, facets
+
+
+@pytest.mark.parametrize("kind, words", [
+    ("hole", "closed: it has holes"), ("flipped", "some facets are flipped"), ("inside out", "normals outwards"),
+    ("flat", "free of degenerate facets"), ("nan", "finite"), ("unknown", "known vertices")])
+def test_damaged_boundaries_are_refused(kind, words):
+    with pytest.raises(ParameterError, match=words):
+        check_boundary(*damaged(kind), name="stl")
+
+
+@pytest.mark.parametrize("facets, words", [([[0, 1], [1, 2], [2, 3]], "holes"), ([[0, 1], [2, 1], [2, 3], [3, 0]], "flipped")])
+def test_damaged_outlines_are_refused(facets, words):
+    with pytest.raises(ParameterError, match=words):
+        check_boundary(SQUARE, facets)
+
+
+def test_a_tool_without_a_free_vertex_is_refused():
+    vertices, facets = cube()
+    with pytest.raises(ParameterError, match="at least one free"):
+        WornBoundary(vertices=vertices, facets=facets, protected=np.ones(len(vertices), bool))
+
+
+# ---- meshes
+
+@pytest.mark.parametrize("make", [cube, lambda: ring(7), lambda: segments(TOOTH)])
+def test_refining_keeps_the_shape_and_the_boundary_closed(make):
+    vertices, facets = check_boundary(*make())
+    fine = check_boundary(*refine(vertices, facets, 7e-4))
+    assert volume(*fine) == pytest.approx(volume(vertices, facets), rel=1e-12)
+    corners = fine[0][fine[1]]
+    assert np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max() <= 7e-4 * (1 + 1e-9)
+
+
+def test_a_prism_has_the_volume_of_its_outline():
+    vertices, facets = check_boundary(*cube(2e-3))
+    assert volume(vertices, facets) == pytest.approx(1e-6, rel=1e-12)
+    assert altitudes(vertices, facets).min() > 0.5e-3
+
+
+def test_segments_that_cross_are_found():
+    bow = np.array([[0, 0], [1, 1], [1, 0], [0, 1.0]])
+    assert crossings(bow, np.array([[0, 1], [1, 2], [2, 3], [3, 0]])) == 1
+    assert crossings(*segments(TOOTH)) == 0
+
+
+@pytest.mark.parametrize("point, nearest", [
+    ((0.2, 0.2, 1), (0.2, 0.2, 0)), ((-1, 0.5, 1), (0, 0.5, 0)), ((2, -1, 0), (1, 0, 0)), ((1, 1, 3), (0.5, 0.5, 0))])
+def test_nearest_point_of_a_triangle(point, nearest):
+    triangle = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0.0]])
+    assert nearest_on_triangle(np.array(point, float), triangle) == pytest.approx(np.array(nearest, float))
+
+
+# ---- wear
+
+@pytest.mark.parametrize("make", [cube, lambda: refine(*segments(TOOTH), 2e-3), sphere])
+@pytest.mark.parametrize("part", [1e-6, 1e-4, 1e-2])
+def test_every_update_takes_exactly_the_demanded_volume(make, part):
+    vertices, facets = make()
+    boundary = WornBoundary(vertices=vertices, facets=facets)
+    chance = np.random.default_rng(3)
+    for _ in range(3):
+        demanded = sizes(boundary) * chance.random(len(boundary.facets))
+        demanded *= part * boundary.first_volume / demanded.sum()
+        before, waiting = exact_volume(boundary.vertices, boundary.facets), boundary.pending.sum()
+        boundary.wear(demanded)
+        taken = before - exact_volume(boundary.vertices, boundary.facets)
+        due = demanded.sum() + waiting - boundary.pending.sum()
+        if taken:
+            assert abs(float(taken) / due - 1) < 1e-9
+        assert abs(boundary.volume_balance()["unexplained"]) < 1e-12 * boundary.archard_volume
+    # The least part is too little to be done to the last digit: it waits.
+    assert (boundary.removed > 0) == (part > 1e-6 or len(vertices[0]) == 2)
+
+
+def test_a_ring_worn_evenly_stays_regular():
+    vertices, facets = ring(20)
+    boundary = WornBoundary(vertices=vertices, facets=facets)
+    for _ in range(20):
+        boundary.wear(sizes(boundary) * 1e-4)
+    radius = np.linalg.norm(boundary.vertices, axis=1)
+    left = 1 - boundary.archard_volume / boundary.first_volume
+    assert radius == pytest.approx(np.full(20, 0.01 * left**0.5), rel=1e-12)
+
+
+def test_a_sphere_worn_evenly_stays_one_to_second_order():
+    """Depth q everywhere leaves the radius r - q, but for the second order of the mesh's spacing."""
+    errors = []
+    for fineness in (3, 4):
+        vertices, facets = sphere(fineness)
+        boundary = WornBoundary(vertices=vertices, facets=facets)
+        for _ in range(40):
+            boundary.wear(sizes(boundary) * 5e-5)
+        radius = np.linalg.norm(boundary.vertices, axis=1)
+        errors.append(np.ptp(radius) / radius.mean())
+        assert radius.mean() == pytest.approx(0.01 * (boundary.volume / boundary.first_volume)**(1 / 3), rel=2e-3)
+    assert errors[1] < 6e-3 and errors[0] / errors[1] > 2.5
+
+
+def test_a_cube_worn_evenly_stays_a_cube():
+    vertices, facets = cube()
+    boundary = WornBoundary(vertices=vertices, facets=facets)
+    for _ in range(200):
+        boundary.wear(sizes(boundary) * 4e-3 * boundary.first_volume / sizes(boundary).sum())
+    side = 0.2**(1 / 3) * 0.01
+    assert np.ptp(boundary.vertices, axis=0) == pytest.approx([side] * 3, rel=2e-3)
+    inner = np.abs(boundary.vertices - boundary.vertices.mean(axis=0)).max(axis=1)
+    assert inner == pytest.approx(np.full(len(inner), side / 2), rel=1e-2)
+
+
+def test_a_worn_face_recedes_and_leaves_its_neighbours_plane():
+    for vertices, facets in (cube(), refine(*segments(SQUARE), 1e-3)):
+        boundary = WornBoundary(vertices=vertices, facets=facets)
+        for _ in range(50):
+            upward = np.maximum(area_vectors(boundary.vertices, boundary.facets)[:, 1], 0)
+            boundary.wear(upward * 0.005 * boundary.first_volume / upward.sum())
+        top = boundary.vertices[vertices[:, 1] > 0.00999, 1]
+        # Corners that crowd are rounded by a facet or so.
+        assert np.median(top) == pytest.approx(0.0075, rel=5e-3) and np.ptp(top) < 3e-4
+        assert np.ptp(boundary.vertices[:, 0]) == pytest.approx(0.01, rel=2e-2)
+
+
+def battered(boundary, centre, reach, part, chance):
+    """Uneven wear of what looks forwards and downwards near the tip."""
+    areas = area_vectors(boundary.vertices, boundary.facets)
+    away = boundary.vertices[boundary.facets].mean(axis=1)[:, :2] - centre
+    demanded = np.maximum(areas[:, 0], 0) + np.maximum(-areas[:, 1], 0)
+    demanded *= np.exp(-(away**2).sum(axis=1) / (2 * reach**2)) * chance.random(len(areas))**2
+    return demanded * part * boundary.first_volume / demanded.sum()
+
+
+def shank(vertices):
+    return (vertices[:, 1] > vertices[:, 1].max() - 1e-9) | (vertices[:, 0] < vertices[:, 0].min() + 1e-9)
+
+
+def test_heavy_uneven_wear_folds_nothing_in_the_plane():
+    vertices, facets = refine(*segments(TOOTH), 1e-3)
+    boundary = WornBoundary(vertices=vertices, facets=facets, protected=shank(vertices))
+    chance = np.random.default_rng(5)
+    while boundary.volume > 0.75 * boundary.first_volume:
+        boundary.wear(battered(boundary, [0, 0], 0.01, 5e-4, chance))
+    assert crossings(boundary.vertices, facets) == 0
+    assert sharpest(boundary) > -0.9
+    assert np.array_equal(boundary.vertices[shank(vertices)], vertices[shank(vertices)])
+    assert abs(boundary.volume_balance()["unexplained"]) < 1e-12 * boundary.archard_volume
+    assert abs(boundary.volume_balance()["shape"]) < 1e-12 * boundary.first_volume
+
+
+def test_heavy_uneven_wear_folds_nothing_in_space():
+    vertices, facets = prism(TOOTH, 0.02, 5e-3)
+    boundary = WornBoundary(vertices=vertices, facets=facets, protected=shank(vertices))
+    chance = np.random.default_rng(5)
+    while boundary.volume > 0.93 * boundary.first_volume:
+        boundary.wear(battered(boundary, [0, 0], 0.02, 5e-4, chance))
+    check_boundary(boundary.vertices, facets)
+    assert sharpest(boundary) > -0.9
+    assert abs(boundary.volume_balance()["unexplained"]) < 1e-12 * boundary.archard_volume
+
+
+def test_a_vertex_of_worn_and_protected_facets_stays_and_loses_no_volume():
+    vertices, facets = refine(*segments(SQUARE), 1e-3)
+    protected = vertices[:, 1] > 0.00999
+    boundary = WornBoundary(vertices=vertices, facets=facets, protected=protected)
+    bare = protected[facets].all(axis=1)
+    mixed = protected[facets].any(axis=1) & ~bare
+    assert mixed.sum() == 2
+    demanded = np.where(mixed, 1e-9, np.where(bare, 2e-9, 0.0))
+    boundary.wear(demanded)
+    assert np.array_equal(boundary.vertices[protected], vertices[protected])
+    assert boundary.kept == pytest.approx(demanded[bare].sum(), rel=1e-15)
+    assert boundary.removed + boundary.pending.sum() == pytest.approx(2e-9, rel=1e-12)
+    assert boundary.removed > 1.9e-9
+
+
+def test_little_wear_waits_until_it_can_be_done_to_the_last_digit():
+    vertices, facets = refine(*segments(SQUARE), 1e-3)
+    boundary = WornBoundary(vertices=vertices, facets=facets)
+    demanded = np.full(len(facets), 1e-18)
+    assert not boundary.wear(demanded)
+    assert boundary.removed == 0 and boundary.pending.sum() == pytest.approx(demanded.sum(), rel=1e-12)
+    assert boundary.wear(np.full(len(facets), 1e-9))
+    assert boundary.removed == pytest.approx(boundary.archard_volume, rel=1e-9)
+
+
+@pytest.mark.parametrize("make", [cube, lambda: refine(*segments(TOOTH), 2e-3)])
+def test_a_tool_worn_away_is_said_and_keeps_its_book(make):
+    vertices, facets = make()
+    boundary = WornBoundary(vertices=vertices, facets=facets)
+    with pytest.raises(WornAway, match="% of the volume"):
+        for _ in range(1000):
+            boundary.wear(sizes(boundary) * 0.02 * boundary.first_volume / sizes(boundary).sum())
+    assert boundary.volume < 0.2 * boundary.first_volume
+    assert abs(boundary.volume_balance()["unexplained"]) < 1e-12 * boundary.archard_volume
+    assert np.isfinite(boundary.vertices).all()
+
+
+def test_one_demand_beyond_the_whole_body_ends_at_once():
+    vertices, facets = cube()
+    boundary = WornBoundary(vertices=vertices, facets=facets)
+    with pytest.raises(WornAway):
+        boundary.wear(np.full(len(facets), 1.0))
+    assert np.array_equal(boundary.vertices, check_boundary(vertices, facets)[0])
+
+
+def test_numbering_changes_nothing():
+    vertices, facets = refine(*segments(TOOTH), 2e-3)
+    order = np.random.default_rng(1).permutation(len(vertices))
+    place = np.argsort(order)
+    turned = np.random.default_rng(2).permutation(len(facets))
+    one = WornBoundary(vertices=vertices, facets=facets)
+    other = WornBoundary(vertices=vertices[order], facets=place[facets][turned])
+    demanded = sizes(one) * np.random.default_rng(3).random(len(facets)) * 1e-5
+    for _ in range(5):
+        one.wear(demanded)
+        other.wear(demanded[turned])
+    assert other.vertices[place] == pytest.approx(one.vertices, abs=1e-12)
+
+
+def test_a_restored_boundary_goes_on_to_the_last_bit():
+    vertices, facets = cube()
+    one, other = (WornBoundary(vertices=vertices, facets=facets) for _ in range(2))
+    demanded = sizes(one) * np.random.default_rng(3).random(len(facets)) * 1e-4
+    for _ in range(3):
+        one.wear(demanded)
+    other.restore(one.state())
+    one.wear(demanded), other.wear(demanded)
+    assert np.array_equal(one.vertices, other.vertices) and one.removed == other.removed

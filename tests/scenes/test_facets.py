@@ -1,0 +1,109 @@
+"""A tool of facets in YADE: one contact at a time, exact friction and wear, the new shape felt, and runs that resume."""
+import json
+import signal
+
+import numpy as np
+import pytest
+
+from .conftest import ROOT, SMALL, arguments, interrupt_script, run_script
+
+SEGMENTS = ROOT / "yade_scripts/cutting_segments.py"
+SHORT = {**SMALL, "velocity": 4.0, "start_up": 8e-4, "cycles": 1, "cycle_time": 2e-4, "reshape": "true", "hardness": 0,
+         "wear_coefficient": 0.01128, "acceleration": 3e4}
+
+
+def pressed(*words):
+    run = run_script(ROOT / "tests/scenes/scripts/facet_contact.py", *words)
+    assert run.code == 0, run.stderr
+    return json.loads(run.stdout.splitlines()[-1])
+
+
+def cut(out, *flags, **values):
+    return run_script(SEGMENTS, *arguments({**SHORT, **values}), "--out", str(out), *flags, out=out)
+
+
+@pytest.fixture(scope="module")
+def worn(tmp_path_factory):
+    return cut(tmp_path_factory.mktemp("segments") / "out", checkpoint_interval=0.3)
+
+
+def result(run, name):
+    return run.summary["results"][name]["value"]
+
+
+@pytest.mark.parametrize("kind, ripple, error", [("single", 1e-12, 1e-11), ("chain", 5e-3, 1e-6)])
+def test_a_particle_passes_over_segments_as_over_one_face(kind, ripple, error):
+    found = pressed(kind)
+    assert found["facets"] == (4 if kind == "single" else 160)
+    assert found["ripple"] < ripple
+    assert found["work"] == pytest.approx(found["friction"], rel=error)
+    assert found["own"] == pytest.approx(found["whole"], rel=1e-10)
+
+
+def test_left_to_themselves_contacts_double_at_the_ends_of_segments():
+    """What the engine is for: without it the force rises by a quarter at every end."""
+    found = pressed("chain", "unwatched")
+    assert found["ripple"] > 0.2
+    assert abs(found["account"] / found["friction"] - 1) > 3e-4
+
+
+def test_worn_triangles_lose_archards_volume_and_the_next_contact_feels_it():
+    found = pressed("triangles")
+    assert found["archard"] == pytest.approx(found["by_work"], rel=1e-12)
+    assert found["removed"] + found["waiting"] == pytest.approx(found["archard"], rel=1e-9)
+    assert found["shape"] == pytest.approx(found["removed"], rel=1e-9)
+    assert found["at_rest"] < 1e-9
+    # Spheres lie deeper than the new face, and YADE's overlap is that with the kernel's worn boundary.
+    assert found["seen"] == pytest.approx(found["overlaps"], rel=1e-9)
+    for height, overlap in zip(found["heights"], found["overlaps"]):
+        assert height - overlap > 5e-6
+
+
+def test_the_segments_cut_wear_and_close_their_books(worn):
+    assert worn.code == 0, worn.stderr
+    assert result(worn, "tensile_cracks") > 20
+    books = worn.summary["audits"]
+    assert abs(books["energy"]["residual"]) < 0.02 * books["energy"]["tool_work"]
+    assert books["friction"]["worn_by"] == pytest.approx(books["friction"]["tool"], rel=1e-9)
+    assert abs(books["mass"]["unexplained"]) < 1e-12 * books["mass"]["archard"]
+    assert abs(books["mass"]["shape"]) < 1e-12 * books["mass"]["initial"]
+    assert books["mass"]["removed"] > 0.9 * books["mass"]["archard"]
+    exact = 0.01128 * 3e4 / 0.839 * books["friction"]["worn_by"] / (515 * 9.80665e6 - 20 / 200 * 6 * 9.80665e6)
+    assert result(worn, "worn_volume") == pytest.approx(exact, rel=1e-12)
+    assert (worn.out / "report.html").stat().st_size > 0
+
+
+def test_a_half_of_the_work_wears_half(worn, tmp_path):
+    run = cut(tmp_path / "out", work_fraction=0.5, reshape="false", cycles=0)
+    friction = run.summary["audits"]["friction"]["worn_by"]
+    whole = result(worn, "worn_volume") / worn.summary["audits"]["friction"]["worn_by"]
+    assert result(run, "worn_volume") == pytest.approx(0.5 * whole * friction, rel=1e-12)
+    assert result(run, "mass_lost") == 0 and result(run, "deepest_wear") == 0
+
+
+def test_stopped_and_resumed_equals_never_stopped(worn, tmp_path):
+    out = tmp_path / "out"
+    for number, after in ((signal.SIGKILL, 2), (signal.SIGTERM, 4)):
+        stopped = interrupt_script(SEGMENTS, out, number, after, **{**SHORT, "checkpoint_interval": 0.01})
+        assert stopped.code in (-signal.SIGKILL, 128 + signal.SIGTERM)
+    resumed = cut(out, "--resume", checkpoint_interval=0.01)
+    assert resumed.code == 0, resumed.stderr
+    assert resumed.summary["results"] == worn.summary["results"]
+    assert resumed.summary["audits"] == worn.summary["audits"]
+    last = [np.load(sorted((run.out / "snapshots").glob("*.npz"))[-1])["tool_vertices"] for run in (worn, resumed)]
+    assert np.array_equal(*last)
+
+
+def test_a_tool_worn_away_ends_cleanly(tmp_path):
+    run = cut(tmp_path / "out", acceleration=1e10, cycles=0)
+    assert run.code == 0, run.stderr
+    assert "worn away" in run.summary["ended"] and "worn away" in run.stdout
+    assert abs(run.summary["audits"]["mass"]["unexplained"]) < 1e-12 * run.summary["audits"]["mass"]["archard"]
+
+
+@pytest.mark.parametrize("values, words", [
+    ({"heat": "true"}, "heat = true: must be false"), ({"sampling_period": 2}, "sampling_period = 2 steps: must be 1"),
+    ({"segment": 0}, "segment = 0 m: must be greater than 0"), ({"work_fraction": 2}, "work_fraction = 2: must be at most 1")])
+def test_bad_value(values, words, tmp_path):
+    run = cut(tmp_path / "out", **values)
+    assert run.code == 2 and words in run.stderr and not (tmp_path / "out").exists()

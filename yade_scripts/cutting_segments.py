@@ -1,0 +1,20 @@
+"""M 8.1: a rigid tool of straight segments cuts bonded sandstone; where the rock fails, and where the tool wears.
+
+    yade -n -x yade_scripts/cutting_segments.py [--name value ...] [--out DIR] [--resume]
+
+As in M: kn = kt = 20e9 N/m and mu = 0.839 between tool and rock too, wear constant k / mu = 1 and hardness 1 Pa, so that
+the worn depth is no real one but shows where wear falls; the shape stays (--reshape true with a real
+--wear_coefficient and --hardness moves the vertices). M cuts at 0.04 m/s, which is 1 s of simulated time for 40 mm and
+some 5 million steps; the default goes ten times as fast over a tenth of the time, --velocity 0.04 --start_up 1 is M's.
+"""
+import os
+import sys
+
+sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(sys.argv[0]))))
+
+from rockwear import run  # noqa: E402
+from rockwear.facet_cutting import FacetCutting, parameters  # noqa: E402
+
+run.main("cutting_segments", parameters(
+    tool_kn=20e9, tool_kt=20e9, tool_mu=0.839, velocity=0.4, start_up=0.02, cycles=0, hardness=1.0, wear_coefficient=0.839,
+    acceleration=1.0, reshape=False), FacetCutting)
