@@ -34,6 +34,18 @@ def integer(low):
     return rule
 
 
+def numbers(each):
+    """A rule: numbers with commas between them, each after the rule `each`."""
+    def rule(name, value, unit):
+        return ",".join(f"{each(name, word.strip(), unit):g}" for word in str(value).split(","))
+    return rule
+
+
+def listed(text):
+    """The numbers of a parameter that `numbers` has checked."""
+    return [float(word) for word in text.split(",")]
+
+
 def flag(name, value, unit):
     """A rule: true or false."""
     words = {"true": True, "1": True, "yes": True, "false": False, "0": False, "no": False}

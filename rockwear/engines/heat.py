@@ -170,6 +170,7 @@ class Heat(Engine):
         """A whole tool of (m,) K in place of the one that is there; what it holds more or less is booked apart."""
         before, state = self.network.heat_content, self.network.state()
         state["capacity"][self.n:], state["temperature"][self.n:] = self.tool_capacity, temperature
+        state["fixed"][self.n:] = False
         self.network.restore(state)
         self.renewed += self.network.heat_content - before
         self._hold_root()

@@ -1,0 +1,130 @@
+"""Figures of a tooth at several speeds: its tip's temperature over time, its fields, transient and quasi-stationary."""
+import numpy as np
+
+from . import cutting
+from .folder import read_history
+from .page import Section, number, quantity, table
+from .plots import MM, canvas, discs, frame, save
+
+KELVIN = 273.15
+COLOURS = ("#c8252c", "#e08a1e", "#2c6e91", "#5b8c3a", "#6b4c9a")
+KINDS = {"pass": "after the pass", "fixed": "quasi-stationary, root held",
+         "insulated": "quasi-stationary, root insulated"}
+
+
+def shows(run):
+    """True for a run with fields of the tool at several speeds."""
+    return cutting.shows(run) and (run.path / "tool_fields.csv").exists()
+
+
+def sections(run):
+    """The sections of the page: temperatures first, then those of any cut."""
+    def drawn(figure):
+        return save(run, figure.__name__, figure(run))
+
+    names = speeds(run)
+    stages = ", ".join(f"cycle {k} at {u} m/s" for k, u in enumerate(names, 1))
+    return [
+        Section("Temperatures", "A pass at each speed, all of the same way through the rock, then the mean load of "
+                f"the pass on the tool alone. The mechanics run at {quantity(run.parameter('velocity', 0), 'm/s')}, heat "
+                f"in the time of the process. Below, {stages}; cycles after these wear the tool, from either field.",
+                [speed_table(run, names), wear_table(run)]),
+        Section("Tip over time", "Hottest particle of the tool. Thick: the pass as simulated. Thin: the tool alone under "
+                "the mean load from there on. Dotted: where it ends. Steel softens from some 300 °C on and has no "
+                "hardness in the table above 600 °C: lines up there say that the tool would not hold, not how hot it gets.",
+                [drawn(tip_over_time)]),
+        Section("Tool at each speed", "After the pass, and where the mean load leads; each picture has its own scale.",
+                [drawn(fields)]),
+        Section("Rock and tool after the passes", "Near the tip, rise above the first temperature.",
+                [drawn(near_the_tip)]),
+        *cutting.sections(run)]
+
+
+def speeds(run):
+    """Speeds of the process as they are written in names."""
+    return [f"{float(word):g}" for word in run.parameter("velocities", "").split(",")
+            if np.isfinite(run.result(f"hottest_after_the_pass_{float(word):g}"))]
+
+
+def speed_table(run, names):
+    """Heat and temperatures at each speed."""
+    kinds = "after_the_pass", "fixed_root", "insulated_root"
+    rows = [(f"{u} m/s", f"{number(1e-3 * run.result(f'friction_heat_of_the_tool_{u}'))} kW/m",
+             f"{number(run.result(f'conductance_to_the_rock_{u}'))} W/mK",
+             *(quantity(run.result(f"hottest_{kind}_{u}"), "K") for kind in kinds))
+            for u in names]
+    return table(rows, ("", "friction heat into the tool", "conductance to the rock", "hottest after the pass",
+                        "quasi-stationary, root held", "quasi-stationary, root insulated"))
+
+
+def wear_table(run):
+    """Wear of the last passes, from either field."""
+    rows = [(f"from the field of the {root} root", quantity(run.result(f"worn_volume_from_{root}_root"), "m3/m"),
+             f"{number(100 * run.result(f'mass_lost_from_{root}_root'))} %") for root in ("fixed", "insulated")
+            if np.isfinite(run.result(f"worn_volume_from_{root}_root"))]
+    header = f"wear at {run.parameter('wear_velocity', 0)} m/s", "by Archard's law", "mass lost"
+    return table(rows, header) if rows else ""
+
+
+def tip_over_time(run):
+    """Rise of the hottest particle over the time of the process, both axes logarithmic."""
+    columns, _ = read_history(run.path / "warming.csv")
+    start = run.parameter("tool_temperature", 293.15)
+    stage, time, hottest = (run.column(name) for name in ("stage", "time", "tool_temperature_max"))
+    figure, (axes,) = canvas(10, 5.5)
+    for k, (u, colour) in enumerate(zip(speeds(run), COLOURS), 1):
+        here = stage == k
+        if here.any():
+            passed = (time[here] - time[stage < k].max()) * run.parameter("velocity", 1.0) / float(u)
+            axes.plot(passed, hottest[here] - start, color=colour, linewidth=3, label=f"{u} m/s")
+        for root, style in (("insulated", "-"), ("fixed", "--")):
+            axes.plot(columns[f"time_{root}_{u}"], columns[f"{root}_{u}"] - start, color=colour, linestyle=style,
+                      linewidth=1)
+            axes.axhline(run.result(f"hottest_{root}_root_{u}") - start, color=colour, linestyle=":", linewidth=1,
+                         xmin=0.93 if root == "insulated" else 0.9)
+    axes.plot([], [], color="black", linewidth=1, label="mean load, root insulated")
+    axes.plot([], [], color="black", linestyle="--", linewidth=1, label="mean load, root held")
+    soft = 600 + KELVIN - start
+    axes.axhline(soft, color="0.6", linewidth=0.8)
+    axes.text(0.01, soft, "end of the hardness table", transform=axes.get_yaxis_transform(), va="bottom", color="0.4")
+    axes.set(xscale="log", yscale="log", xlabel="time of the process / s", ylabel="rise of the hottest particle / K")
+    low, high = axes.get_ylim()
+    axes.set_ylim(max(low, 1e-6 * high), high)
+    axes.legend(loc="lower right")
+    return figure
+
+
+def fields(run):
+    """The tool at each speed: after the pass, and quasi-stationary with either root."""
+    columns, _ = read_history(run.path / "tool_fields.csv")
+    places, radii, names = np.column_stack([columns["x"], columns["y"]]), columns["radius"], speeds(run)
+    outline = MM * run.model["outline"]
+    size = np.ptp(outline, axis=0)
+    limits = (outline[:, 0].min() - 2, outline[:, 0].max() + 2, outline[:, 1].min() - 2, outline[:, 1].max() + 2)
+    figure, panels = canvas(12, len(KINDS) * (4 * size[1] / size[0] * 0.75 + 0.4), len(KINDS), len(names))
+    for axes, (kind, u) in zip(panels, [(kind, u) for kind in KINDS for u in names]):
+        celsius = columns[f"{kind}_{u}"] - KELVIN
+        painted = discs(axes, places, radii, array=celsius, cmap=cutting.WARMTH, linewidths=0)
+        frame(axes, limits, f"{u} m/s, {KINDS[kind]}\nhottest {number(celsius.max())} °C")
+        axes.tick_params(labelsize=7)
+        figure.colorbar(painted, ax=axes, shrink=0.7, format="%.4g").ax.tick_params(labelsize=7)
+    return figure
+
+
+def near_the_tip(run):
+    """Rock and tool at the end of the pass of each speed."""
+    ends, names = run.stage_ends(), speeds(run)
+    shots = [(u, run.snapshot(ends[k])) for k, u in enumerate(names, 1) if k in ends]
+    if not shots:
+        return None
+    cold = min(float(np.nanmin(shot["temperature"])) for _, shot in shots)
+    highest = max(float(np.nanmax(shot["temperature"])) for _, shot in shots) - cold
+    norm = cutting.LogNorm(1e-3 * max(highest, 1e-3), max(highest, 1e-3))
+    figure, panels = canvas(12, 4.4, 1, len(shots))
+    for axes, (u, shot) in zip(panels, shots):
+        painted = cutting.paint_temperature(axes, run, shot, cold, norm)
+        outline = MM * (run.model["outline"] + shot["tool_offset"])
+        x, y = outline[np.argmin(outline[:, 1])]
+        frame(axes, (x - 10, x + 20, y - 10, y + 20), f"{u} m/s")
+    figure.colorbar(painted, ax=panels, label="rise / K", shrink=0.8)
+    return figure

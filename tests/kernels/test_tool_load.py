@@ -1,0 +1,43 @@
+"""The tool under its mean load: exact states of a bar, and heat that goes out as it comes in."""
+import numpy as np
+import pytest
+
+from rockwear.kernels.checks import ParameterError
+from rockwear.kernels.tool_load import tool_under_load
+
+N, H, C = 20, 3.0, 2.0
+BAR = dict(capacity=np.full(N, C), paths=(np.column_stack([np.arange(N - 1), np.arange(1, N)]), np.full(N - 1, H)),
+           temperature=300.0, rock_temperature=np.full(N, 290.0), ambient=280.0)
+
+
+def at(place, value):
+    found = np.zeros(N)
+    found[place] = value
+    return found
+
+
+def test_a_bar_with_a_held_root_rises_linearly():
+    network = tool_under_load(**BAR, friction_heat=at(0, 60.0), contact=np.zeros(N), convection=np.zeros(N), root=[N - 1],
+                              root_temperature=310.0)
+    assert network.steady_state() == pytest.approx(310 + 60 / H * np.arange(N - 1, -1, -1), rel=1e-12)
+
+
+def test_with_an_insulated_root_all_heat_goes_to_rock_and_air():
+    contact, air, heat = at(0, 1.5), at(slice(5, 15), 0.2), at(slice(0, 3), 7.0)
+    network = tool_under_load(**BAR, friction_heat=heat, contact=contact, convection=air)
+    end = network.steady_state()
+    out = (contact * (end - 290.0)).sum() + (air * (end - 280.0)).sum()
+    assert out == pytest.approx(heat.sum(), rel=1e-10)
+    network.advance(3000.0)
+    assert network.temperature == pytest.approx(end, rel=1e-9)
+
+
+def test_no_load_leaves_the_tool_between_rock_and_air():
+    network = tool_under_load(**BAR, friction_heat=np.zeros(N), contact=at(0, 1.0), convection=at(0, 1.0))
+    assert network.steady_state() == pytest.approx(np.full(N, 285.0), rel=1e-12)
+
+
+def test_a_load_without_a_way_out_is_refused():
+    network = tool_under_load(**BAR, friction_heat=at(0, 1.0), contact=np.zeros(N), convection=np.zeros(N))
+    with pytest.raises(ParameterError, match="no node is fixed"):
+        network.steady_state()

@@ -1,0 +1,114 @@
+"""Scenes about temperature: the process slower than its mechanics, no conduction, and a ripper at several speeds."""
+import signal
+
+import numpy as np
+import pytest
+
+from .conftest import ROOT, SMALL, arguments, history, interrupt_script, run_script, test_tooth
+
+RIPPER = ROOT / "yade_scripts/ripper_temperature.py"
+PASSES = {**{name: value for name, value in SMALL.items() if name != "cycles"}, "start_up": 8e-4, "cycle_time": 3e-4,
+          "long_time": 1.0, "tool_radius_max": 0.52e-3, "acceleration": 1e5}
+
+
+def value(run, name):
+    return run.summary["results"][name]["value"]
+
+
+def ripper(out, *flags, **values):
+    return run_script(RIPPER, *arguments({**PASSES, **values}), "--out", str(out), *flags, out=out)
+
+
+@pytest.fixture(scope="module")
+def passes(tmp_path_factory):
+    return ripper(tmp_path_factory.mktemp("ripper") / "out")
+
+
+@pytest.fixture(scope="module")
+def cuts(tmp_path_factory):
+    """The same cut at 4 m/s, and as a process at 0.04 m/s; each with and without conduction."""
+    folder, found = tmp_path_factory.mktemp("cuts"), {}
+    for slow in (1, 100):
+        for conduction in ("true", "false"):
+            found[slow, conduction] = test_tooth(
+                folder / f"{slow}{conduction}", velocity=4 / slow, speed_up=slow, conduction=conduction, report="false",
+                acceleration=0, **{name: SMALL.get(name, default) * slow for name, default in dict(
+                    start_up=0, heat_period=1e-4, surface_period=5e-4, record_period=2e-5, snapshot_period=0).items()},
+                **{"cycles": 0})
+            assert found[slow, conduction].code == 0, found[slow, conduction].stderr
+    return found
+
+
+def test_the_mechanics_of_a_slow_process_are_those_of_the_fast_one(cuts):
+    for name in ("mean_cutting_force", "tensile_cracks", "time_step"):
+        assert len({value(run, name) for run in cuts.values()}) == 1
+    assert value(cuts[100, "true"], "simulated_time") == pytest.approx(100 * value(cuts[1, "true"], "simulated_time"))
+
+
+def test_heat_flows_in_the_time_of_the_process(cuts):
+    assert value(cuts[1, "false"], "tool_temperature_max") == value(cuts[100, "false"], "tool_temperature_max")
+    rise = {slow: value(cuts[slow, "true"], "tool_temperature_max") - 293.15 for slow in (1, 100)}
+    assert 0 < rise[100] < 0.9 * rise[1]
+    convected = {slow: cuts[slow, "true"].summary["audits"]["heat"]["convected"] for slow in (1, 100)}
+    assert convected[100] < 5 * convected[1] < 0
+
+
+def test_without_conduction_heat_stays_where_it_arose(cuts):
+    run = cuts[1, "false"]
+    book = run.summary["audits"]["heat"]
+    assert book["convected"] == 0 and book["stored"] == pytest.approx(book["generated"], rel=1e-9)
+    assert value(run, "tool_temperature_max") > value(cuts[1, "true"], "tool_temperature_max")
+
+
+def test_the_ripper_leaves_its_page(passes):
+    assert passes.code == 0, passes.stderr
+    for name in ("tip_over_time.png", "fields.png", "near_the_tip.png", "temperature.png"):
+        assert (passes.out / "figures" / name).stat().st_size > 1e4
+
+
+def test_all_passes_take_the_same_heat_a_metre(passes):
+    a_metre = [value(passes, f"friction_heat_of_the_tool_{u}") / float(u) for u in ("4", "0.4", "0.04")]
+    assert a_metre[0] > 10 and a_metre == pytest.approx([a_metre[0]] * 3, rel=1e-4)
+
+
+def test_slower_means_cooler_and_a_held_root_too(passes):
+    for kind in ("fixed_root", "insulated_root"):
+        rises = [value(passes, f"hottest_{kind}_{u}") - 293.15 for u in ("4", "0.4", "0.04")]
+        assert rises[0] > 5 * rises[1] > 25 * rises[2] > 0
+    for u in ("4", "0.4", "0.04"):
+        assert 293.15 < value(passes, f"hottest_fixed_root_{u}") < value(passes, f"hottest_insulated_root_{u}")
+
+
+def test_each_field_starts_its_own_wear_with_a_whole_tool(passes):
+    columns = history(passes.out)
+    stage, worn, hottest = (columns[name] for name in ("stage [-]", "worn_volume [m3]", "tool_temperature_max [K]"))
+    assert worn[stage <= 3].max() < 1e-20 and worn[stage == 4].max() > 1e-9
+    assert worn[stage == 5].min() < worn[stage == 4].max()
+    for k, root in ((4, "fixed"), (5, "insulated")):
+        assert hottest[stage == k][0] == pytest.approx(value(passes, f"hottest_{root}_root_0.4"), abs=1.0)
+        assert value(passes, f"worn_volume_from_{root}_root") == pytest.approx(worn[stage == k].max(), rel=0.2)
+    assert abs(passes.summary["audits"]["heat"]["residual"]) < 1e-8 * passes.summary["audits"]["heat"]["generated"]
+
+
+def test_a_stopped_ripper_resumes_to_the_last_bit(passes, tmp_path):
+    out, options = tmp_path / "out", {**PASSES, "checkpoint_interval": 0.01}
+    for after in (4, 12):
+        assert interrupt_script(RIPPER, out, signal.SIGTERM, after, **options).code == 128 + signal.SIGTERM
+    resumed = ripper(out, "--resume", checkpoint_interval=0.01)
+    assert resumed.code == 0, resumed.stderr
+    assert resumed.summary["results"] == passes.summary["results"]
+    assert resumed.summary["audits"] == passes.summary["audits"]
+    for name in ("history.csv", "tool_fields.csv", "warming.csv"):
+        assert (out / name).read_bytes() == (passes.out / name).read_bytes()
+
+
+@pytest.mark.parametrize("values, words", [
+    ({"velocities": "4,fast"}, "velocities = fast"),
+    ({"velocities": "4,0"}, "velocities = 0 m/s: must be greater than 0"),
+    ({"wear_velocity": 0.5}, "wear_velocity = 0.5 m/s: must be one of velocities = 4,0.4,0.04"),
+    ({"cycles": 3}, "cycles = 3"),
+])
+def test_bad_input_ends_in_one_line(tmp_path, values, words):
+    run = ripper(tmp_path / "out", **values)
+    errors = [line for line in run.stderr.splitlines() if line.startswith("error: ")]
+    assert run.code == 2 and len(errors) == 1 and words in errors[0] and not (tmp_path / "out").exists()
