@@ -44,8 +44,8 @@ class Temperatures(Cutting):
         wear = [(f"wear from the {root} root's field, pass {n + 1}", v.wear_velocity, root, n == 0)
                 for root in ROOTS for n in range(v.wear_passes)]
         passes = [(f"{u:g} m/s", u, None, True) for u in self.velocities]
-        self.schedule = [("start-up", v.velocity, None, True), *passes, *wear]
         # (name, velocity of the process, root whose field starts it, whether it starts with a whole tool)
+        self.schedule = [("start-up", v.velocity, None, True), *passes, *wear]
         self._plan({name: v.cycle_time if k else v.start_up for k, (name, *_) in enumerate(self.schedule)})
         self.whole = self.tool.erosion.state()
         self.passes, self.worn = {}, {}
@@ -93,6 +93,10 @@ class Temperatures(Cutting):
         """A whole tool at its first temperature, or with the field that the stage starts from."""
         _, velocity, root, _ = self.schedule[self.stage]
         self.tool.erosion.restore({name: np.copy(value) for name, value in self.whole.items()})
+        # What is said of the wear is said of this tool alone.
+        self.wear.events[:] = 0
+        if self.profile:
+            self.profile.increments, self.profile.booked = [], np.zeros(self.profile.places)
         cold = np.full(self.tool.count, self.v.tool_temperature)
         self.heat.renew_tool(self.field(velocity, root) if root else cold)
 

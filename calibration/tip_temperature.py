@@ -1,0 +1,99 @@
+"""What the tip's temperature depends on: what the sources leave open, one at a time, in one figure.
+
+    python3 -m calibration.tip_temperature DIR [--quick]
+
+Particle size at the tool's surface, conductance between particles, from tool to rock and to air or water, sharing of
+friction heat, and the speed at which the mechanics are run, each from its low to its high choice, against the scatter
+over packings. --quick takes rock discs twice as large (a tenth of the time, and fewer contacts at the tip).
+A scene is a row of SCENES: its script, its values, and the temperatures (K) among its results.
+"""
+import json
+import sys
+from pathlib import Path
+
+import numpy as np
+
+from calibration.runs import Runs
+from rockwear.report import plots
+
+RIPPER = dict(velocities=0.4, wear_passes=0, report="false", snapshot_period=1, coarsening=3)
+QUICK = dict(radius_min=2e-3, radius_max=3e-3, Rn=0.2e6, Rt=2e6)
+"""Twice the discs at the same macroscopic strength."""
+SCENES = {"ripper at 0.4 m/s": ("yade_scripts/ripper_temperature.py", RIPPER, {
+    "after a pass": "hottest_after_the_pass_0.4", "quasi-stationary, root held": "hottest_fixed_root_0.4",
+    "quasi-stationary, root insulated": "hottest_insulated_root_0.4"})}
+
+
+def size(radius):
+    """Tool discs of so many metres, within a fifth."""
+    return dict(tool_radius_min=0.8 * radius, tool_radius_max=1.2 * radius)
+
+
+def loading(factor):
+    """The mechanics so many times as fast, over the same way."""
+    return dict(velocity=4.0 * factor, start_up=0.005 / factor, cycle_time=0.004 / factor, heat_period=1e-4 / factor,
+                record_period=2e-5 / factor)
+
+
+OPEN = {
+    "packing (scatter)": {f"seed {n}": dict(seed=n) for n in (1, 2, 3)},
+    "tool discs at the surface": {"0.35 mm": size(0.35e-3), "0.5 mm": size(0.5e-3), "0.8 mm": size(0.8e-3)},
+    "conductance between particles": {name: dict(bond_conductance=name) for name in ("cells", "P", "M")},
+    "conductance tool to rock": {f"{h:g} W/m²K": dict(contact_conductance=h) for h in (150, 1500, 15000)},
+    "air or water": {name: dict(convection=h) for name, h in
+                     (("air, 30", 30), ("water, 5000", 5000), ("water, 25000", 25000))},
+    "sharing of friction heat": {name: dict(heat_sharing=name) for name in ("equal", "effusivity")},
+    "loading speed": {f"{4 * factor:g} m/s": loading(factor) for factor in (2, 1, 0.25)},
+}
+
+
+def measure(folder, scene, quick=False, at_once=2):
+    """{what is open: {choice: {temperature: rise in K}}} of a scene; finished runs are kept."""
+    script, values, temperatures = SCENES[scene]
+    values = {**values, **(QUICK if quick else {})}
+    with Runs(folder, at_once=at_once, keep=True) as runs:
+        jobs = {(what, choice): runs.start(f"{what}-{choice}".translate(str.maketrans(" /,²()", "______")), script,
+                                           **{**values, **change})
+                for what, choices in OPEN.items() for choice, change in choices.items()}
+        found = {key: job.result() for key, job in jobs.items()}
+    return {what: {choice: {name: found[what, choice].result(result) - found[what, choice].parameter("tool_temperature", 0.0)
+                            for name, result in temperatures.items()} for choice in choices}
+            for what, choices in OPEN.items()}
+
+
+def draw(scene, measured):
+    """A panel a temperature: a bar from the lowest to the highest rise, a mark a choice."""
+    names = list(next(iter(next(iter(measured.values())).values())))
+    figure, panels = plots.canvas(5 * len(names), 0.8 + 0.75 * len(measured), 1, len(names), sharey=True)
+    for axes, name in zip(panels, names):
+        for row, (what, choices) in enumerate(measured.items()):
+            rises = np.array([choice[name] for choice in choices.values()])
+            colour = "0.55" if "scatter" in what else "#b5541c"
+            axes.barh(row, np.ptp(rises), left=rises.min(), height=0.25, color=colour, alpha=0.5)
+            axes.plot(rises, np.full(len(rises), row), "|", color=colour, markersize=14, markeredgewidth=2)
+            for k, (choice, rise) in enumerate(zip(choices, rises)):
+                axes.text(rise, row + (0.22 if k % 2 else -0.22), choice, ha="center", fontsize=7,
+                          va="bottom" if k % 2 else "top")
+        axes.set(xscale="log", xlabel="rise of the hottest particle / K", title=name)
+        axes.margins(x=0.15)
+    panels[0].set_yticks(range(len(measured)), list(measured))
+    panels[0].set_ylim(len(measured) - 0.4, -0.6)
+    figure.suptitle(f"{scene}: what the tip's temperature depends on")
+    return figure
+
+
+def main(folder, quick):
+    """Measure every scene and write a figure and the numbers of each."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for scene in SCENES:
+        place = folder / scene.replace(" ", "_").replace("/", "_")
+        measured = measure(place, scene, quick)
+        (folder / f"{place.name}.json").write_text(json.dumps(measured, indent=1))
+        draw(scene, measured).savefig(folder / f"{place.name}.png", dpi=110)
+        for what, choices in measured.items():
+            for choice, rises in choices.items():
+                print(f"{what:32s} {choice:16s}", *(f"{name}: {rise:.3g} K;" for name, rise in rises.items()))
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]), "--quick" in sys.argv)
