@@ -56,9 +56,11 @@ def measure(folder, scene, quick=False, at_once=2):
                                            **{**values, **change})
                 for what, choices in OPEN.items() for choice, change in choices.items()}
         found = {key: job.result() for key, job in jobs.items()}
-    return {what: {choice: {name: found[what, choice].result(result) - found[what, choice].parameter("tool_temperature", 0.0)
-                            for name, result in temperatures.items()} for choice in choices}
-            for what, choices in OPEN.items()}
+    def rise(run, result):
+        return run.result(result) - run.parameter("tool_temperature", 0.0)
+
+    return {what: {choice: {name: rise(found[what, choice], result) for name, result in temperatures.items()}
+                   for choice in choices} for what, choices in OPEN.items()}
 
 
 def draw(scene, measured):
@@ -71,11 +73,12 @@ def draw(scene, measured):
             colour = "0.55" if "scatter" in what else "#b5541c"
             axes.barh(row, np.ptp(rises), left=rises.min(), height=0.25, color=colour, alpha=0.5)
             axes.plot(rises, np.full(len(rises), row), "|", color=colour, markersize=14, markeredgewidth=2)
-            for k, (choice, rise) in enumerate(zip(choices, rises)):
-                axes.text(rise, row + (0.22 if k % 2 else -0.22), choice, ha="center", fontsize=7,
-                          va="bottom" if k % 2 else "top")
-        axes.set(xscale="log", xlabel="rise of the hottest particle / K", title=name)
-        axes.margins(x=0.15)
+            for k, n in enumerate(np.argsort(rises)):
+                axes.text(rises[n], row + (0.2 if k % 2 else -0.2), list(choices)[n], ha="center", fontsize=7,
+                          va="top" if k % 2 else "bottom")
+        every = [choice[name] for choices in measured.values() for choice in choices.values()]
+        axes.set(xscale="log", xlabel="rise of the hottest particle / K", title=name,
+                 xlim=(min(every) / 1.5, max(every) * 1.5))
     panels[0].set_yticks(range(len(measured)), list(measured))
     panels[0].set_ylim(len(measured) - 0.4, -0.6)
     figure.suptitle(f"{scene}: what the tip's temperature depends on")
