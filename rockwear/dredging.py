@@ -2,6 +2,7 @@
 import math
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from .cutting import Cutting, parameters
 from .kernels.checks import require
@@ -226,10 +227,14 @@ class Dredging(Cutting):
                               temperature=0.0)
         network.restore(state)
         there = np.flatnonzero(network.present[self.rock.count:])
-        power, touch, rock_temperature = (values[there] for values in self.heat.averages())
+        # What particles took up that are gone since comes to the nearest that are left.
+        heir = cKDTree(self.tool.positions[there]).query(self.tool.positions)[1]
+        power, touch, rock_temperature = self.heat.averages()
+        power, touch, warmth = (np.bincount(heir, values, len(there))
+                                for values in (power, touch, touch * rock_temperature))
         tool, v = self.rock.count + there, self.v
         water = state["convection"][tool]
-        wetted = np.divide(water * v.ambient_temperature + touch * rock_temperature, water + touch,
+        wetted = np.divide(water * v.ambient_temperature + warmth, water + touch,
                            out=np.full(len(tool), v.ambient_temperature), where=water + touch > 0)
         rows = []
         for turn in range(1, count + 1):
