@@ -4,8 +4,8 @@
 
 As in M: kn = kt = 20e9 N/m and mu = 0.839 between tool and rock too, wear constant k / mu = 1 and hardness 1 Pa, so that
 the worn depth is no real one but shows where wear falls; the shape stays (--reshape true with a real
---wear_coefficient and --hardness moves the vertices). M cuts at 0.04 m/s, which is 1 s of simulated time for 40 mm and
-some 5 million steps; the default goes ten times as fast over a tenth of the time, --velocity 0.04 --start_up 1 is M's.
+--wear_coefficient and --hardness moves the vertices). M cuts 40 mm at 0.04 m/s, some 5 million steps; the default goes
+ten times as fast over 8 mm, and --velocity 0.04 --start_up 1 is M's.
 """
 import os
 import sys
