@@ -1,6 +1,6 @@
 # rockwear: how a rock-cutting tool heats up, wears and changes its shape.
 PYTHON   := /usr/bin/python3
-PACKAGES := yade python3-numpy python3-scipy python3-matplotlib python3-pil python3-pytest python3-pytest-xdist python3-pyflakes
+PACKAGES := yade python3-numpy python3-scipy python3-matplotlib python3-pil python3-stl python3-pytest python3-pytest-xdist python3-pyflakes
 OUT      := out
 SUDO     := $(if $(filter 0,$(shell id -u)),,sudo)
 TOOTH    := yade -n -x -j1 yade_scripts/test_tooth.py
@@ -24,8 +24,8 @@ setup: ## install what is missing (Debian packages), check that YADE runs
 	  fi; \
 	fi
 	@command -v yade >/dev/null || { echo "setup: YADE is missing, and there is no apt-get to install it (Debian package yade)" >&2; exit 1; }
-	@$(PYTHON) -c 'import numpy, scipy, matplotlib, PIL, pytest, xdist' 2>/dev/null || { \
-	  echo "setup: $(PYTHON) lacks one of numpy, scipy, matplotlib, PIL, pytest, xdist (Debian packages python3-...)" >&2; exit 1; }
+	@$(PYTHON) -c 'import numpy, scipy, matplotlib, PIL, stl, pytest, xdist' 2>/dev/null || { \
+	  echo "setup: $(PYTHON) lacks one of numpy, scipy, matplotlib, PIL, stl, pytest, xdist (Debian packages python3-...)" >&2; exit 1; }
 	@yade --version >/dev/null 2>&1 || { echo "setup: YADE is installed but does not start (try: yade --version)" >&2; exit 1; }
 
 # Rock graded threefold below the cut, and wear fifteen times faster than M's factor of 7000, so that the tip goes in minutes.

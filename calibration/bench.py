@@ -38,7 +38,7 @@ def run(folder, values):
     """One run of the main scene, unless the folder already has it. -> summary with the worn depth by tool particle."""
     if not (folder / "summary.json").exists():
         start(folder, values)
-    summary = json.loads((folder / "summary.json").read_text())
+    summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     last = sorted((folder / "snapshots").glob("*.npz"))[-1]
     summary["worn_depth"] = np.load(last)["worn_depth"]
     return summary
@@ -162,7 +162,7 @@ def main(folder):
     seeds = {name: [runs[f"seed-{s}-{name}"] for s in SEEDS] for name in variants}
     subprocess.run(["yade", "-n", "-x", "-j1", str(ROOT / "calibration/overhead.py"), "--out", str(folder)], check=True,
                    capture_output=True, stdin=subprocess.DEVNULL)
-    overhead = json.loads((folder / "overhead.json").read_text())
+    overhead = json.loads((folder / "overhead.json").read_text(encoding="utf-8"))
 
     figure, axes = plt.subplots(1, 3, figsize=(15, 4.2), constrained_layout=True)
     draw(axes[0], sampling, "sampling_period", DEFAULT_SAMPLING,
@@ -175,9 +175,9 @@ def main(folder):
     figure.savefig(folder / "speed_against_error.png", dpi=110)
     result = {"sampling": sampling, "heat": heat, "step": step, "overhead": overhead,
               "seeds": {name: over_seeds(found) for name, found in seeds.items()}}
-    (folder / "bench.json").write_text(json.dumps(result, indent=1))
+    (folder / "bench.json").write_text(json.dumps(result, indent=1), encoding="utf-8")
     text = "\n".join([markdown(result), *loading_speed.curve(folder), *heat_study.curve(folder)])
-    (folder / "bench.md").write_text(text)
+    (folder / "bench.md").write_text(text, encoding="utf-8")
     print(text)
 
 

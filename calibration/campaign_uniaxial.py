@@ -230,7 +230,7 @@ def write(folder):
                     if test == "compression"}
             lines += [f"### {TITLES[campaign]}: against the brittle law", "", *against(rows[campaign], "brittle"),
                       *likeness(maps)]
-    (folder / "tables.md").write_text("\n".join(lines))
+    (folder / "tables.md").write_text("\n".join(lines), encoding="utf-8")
     with matplotlib.rc_context(plots.STYLE):
         for name, figure in drawn(runs, rows).items():
             figure.savefig(folder / f"{name}.png")
@@ -295,7 +295,7 @@ def main(folder, words):
                     print(error, file=sys.stderr, flush=True)
                     failed = 1
     write(folder)
-    print((folder / "tables.md").read_text())
+    print((folder / "tables.md").read_text(encoding="utf-8"))
     return failed
 
 

@@ -383,7 +383,7 @@ def main(folder):
         convergence_figure(space, in_time).savefig(folder / "heat_convergence.png")
         tip_figure(*tip).savefig(folder / "heat_tip.png")
     text = markdown(found, space, in_time, tip, seconds)
-    (folder / "heat.md").write_text(text)
+    (folder / "heat.md").write_text(text, encoding="utf-8")
     print(text)
 
 

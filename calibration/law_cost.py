@@ -79,7 +79,7 @@ def main():
     folder.mkdir(parents=True, exist_ok=True)
     runs = [{law: stretches({**values, "law": law}) for law in LINEAR_LAWS} for _ in range(values["turns"])]
     rows = table(runs, values["H"])
-    (folder / "law_cost.json").write_text(json.dumps({"turns": values["turns"], "rows": rows}, indent=1))
+    (folder / "law_cost.json").write_text(json.dumps({"turns": values["turns"], "rows": rows}, indent=1), encoding="utf-8")
     print("law           H, N/m   past peak, mean   at the end   ms a step   ratio: wall     cpu   cpu, worst stretch")
     for row in rows:
         H = f"{row['H']:.3g}" if row["H"] else "-"

@@ -98,7 +98,7 @@ def markdown(rows):
 def curve(folder):
     """Run what is missing, draw loading_speed.png, write loading_speed.json. -> lines of a page in Markdown."""
     rows = deviations(measure(folder / "runs"))
-    (folder / "loading_speed.json").write_text(json.dumps(rows, indent=1))
+    (folder / "loading_speed.json").write_text(json.dumps(rows, indent=1), encoding="utf-8")
     with matplotlib.rc_context(plots.STYLE):
         draw(rows).savefig(folder / "loading_speed.png")
     return ["![speed of loading](loading_speed.png)", "", *markdown(rows), ""]

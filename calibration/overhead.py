@@ -45,7 +45,7 @@ def main():
     medians = {kind: median(times) for kind, times in seconds.items()}
     (folder / "overhead.json").write_text(json.dumps({
         "seconds_a_step": seconds, "median": medians, "overhead": medians["alive"] / medians["dead"] - 1,
-        "bonds": len(scene.rock.pairs), "cracks": len(scene.bonds.cracks), "skin": len(scene.tool.erosion.skin)}, indent=1))
+        "bonds": len(scene.rock.pairs), "cracks": len(scene.bonds.cracks), "skin": len(scene.tool.erosion.skin)}, indent=1), encoding="utf-8")
     os._exit(0)
 
 

@@ -213,7 +213,7 @@ def main(folder):
         rub(tools[0], WORN, portion)
         pattern.wear(tools[1], PATTERN_WORN, portion)
         lines.append(f"| {portion:.3g} | " + " | ".join(f"{100 * unexplained(tool):+.1f} %" for tool in tools) + " |")
-    (folder / "particle_size.md").write_text("\n".join(lines) + "\n")
+    (folder / "particle_size.md").write_text("\n".join(lines) + "\n", encoding="utf-8")
     print("\n".join(lines))
     with matplotlib.rc_context(plots.STYLE):
         draw(polygon, pattern, ways, off).savefig(folder / "particle_size.png")

@@ -137,7 +137,7 @@ def main(worn_run, folder, seeds=SEEDS):
         rows = [{"tooth": number, "lost": teeth[number]["lost"], "seed": seed, **measure(future.result())}
                 for (number, seed), future in cuts.items()]
     lines = [",".join(rows[0])] + [",".join(f"{value:.6g}" for value in row.values()) for row in rows]
-    (folder / "sharp_and_worn.csv").write_text("\n".join(lines) + "\n")
+    (folder / "sharp_and_worn.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
     write_page(folder, teeth, rows)
 
 

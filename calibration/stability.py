@@ -159,14 +159,14 @@ def main(folder):
     lines = ["# The critical time step on hard cases", "", WORDS, "", "![steps](stability.png)", "",
              f"| {' | '.join(HEADER)} |", "|---" * len(HEADER) + "|",
              *(f"| {' | '.join(map(str, row))} |" for row in table), "", *(f"- {remark}" for remark in said), ""]
-    (folder / "stability.md").write_text("\n".join(lines))
+    (folder / "stability.md").write_text("\n".join(lines), encoding="utf-8")
     with matplotlib.rc_context(plots.STYLE):
         figure(cases).savefig(folder / "stability.png")
     sections = [page.Section("Cases", WORDS, [page.image(folder / "stability.png"), page.table(table, HEADER)]),
                 page.Section("Remarks", "", [f"<p>{remark}</p>" for remark in said])]
     failed = [row for row in rows(cases) if abs(row[2] - row[1]) > row[3]]
     (folder / "stability.html").write_text(page.document(
-        "The critical time step on hard cases", f"{len(cases)} cases, {len(failed)} of their checks fail", sections))
+        "The critical time step on hard cases", f"{len(cases)} cases, {len(failed)} of their checks fail", sections), encoding="utf-8")
     print("\n".join(lines))
     return 1 if failed else 0
 

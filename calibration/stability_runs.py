@@ -288,7 +288,7 @@ def main():
     folder = Path(v.out)
     folder.mkdir(parents=True, exist_ok=True)
     summary = {"scene": "stability", "parameters": vars(v), "cases": cases}
-    (folder / "summary.json").write_text(json.dumps(summary, indent=1))
+    (folder / "summary.json").write_text(json.dumps(summary, indent=1), encoding="utf-8")
     sys.stdout.flush()
     os._exit(0)
 

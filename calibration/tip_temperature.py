@@ -91,7 +91,7 @@ def main(folder, quick):
     for scene in SCENES:
         place = folder / scene.replace(" ", "_").replace("/", "_")
         measured = measure(place, scene, quick)
-        (folder / f"{place.name}.json").write_text(json.dumps(measured, indent=1))
+        (folder / f"{place.name}.json").write_text(json.dumps(measured, indent=1), encoding="utf-8")
         draw(scene, measured).savefig(folder / f"{place.name}.png", dpi=110)
         for what, choices in measured.items():
             for choice, rises in choices.items():

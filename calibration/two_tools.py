@@ -44,7 +44,7 @@ def profile(folder, tool):
 def main(folders):
     runs = {"particles": [], "segments": []}
     for folder in map(Path, folders):
-        summary = json.loads((folder / "summary.json").read_text())
+        summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
         tool = summary["parameters"]["tool"]
         runs[tool].append((summary["results"]["worn_volume"]["value"], *profile(folder, tool)))
     with matplotlib.rc_context(plots.STYLE):

@@ -31,7 +31,7 @@ def write_csv(path, rows):
     """Rows of dicts with the same keys; no file without rows."""
     if not rows:
         return
-    with open(path, "w", newline="") as file:
+    with open(path, "w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, rows[0].keys(), lineterminator="\n")
         writer.writeheader()
         writer.writerows({k: f"{v:.6g}" if isinstance(v, float) else v for k, v in row.items()} for row in rows)
@@ -45,7 +45,7 @@ def read_csv(path):
         except ValueError:
             return text
 
-    with open(path, newline="") as file:
+    with open(path, newline="", encoding="utf-8") as file:
         return [{name: value(text) for name, text in row.items()} for row in csv.DictReader(file)]
 
 

@@ -88,10 +88,10 @@ def main(folder):
             table += [{"section": section.title, **asdict(row), "verdict": row.verdict} for row in rows]
             for words in [row.cells() for row in rows] or [[wrong]]:
                 print(" | ".join([section.title, *words]), flush=True)
-    (folder / "validation.json").write_text(json.dumps(table, indent=1))
+    (folder / "validation.json").write_text(json.dumps(table, indent=1), encoding="utf-8")
     differ = sum(row["verdict"] == "differs" for row in table)
     (folder / "validation.html").write_text(page.document(
-        "Validation", f"{len(table)} quantities: {failed} fail, {differ} differ from what a source says", pages))
+        "Validation", f"{len(table)} quantities: {failed} fail, {differ} differ from what a source says", pages), encoding="utf-8")
     return 1 if failed else 0
 
 

@@ -218,7 +218,7 @@ def _write(folder, found, law):
             "k_of_each_test": [k for k, _ in one["rows"]],
             "uncertainty_of_each_test": _plain(u for _, u in one["rows"])}
             for steel, one in found.items()}}, indent=1)
-        (folder / "wear_fit.json").write_text(text)
+        (folder / "wear_fit.json").write_text(text, encoding="utf-8")
         draw(found, folder / "wear_fit.png")
     except OSError as error:
         raise ParameterError("out", str(folder), f"a folder that can be written ({error.strerror})") from None

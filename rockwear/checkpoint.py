@@ -63,7 +63,7 @@ def save(folder, *, identity, state, write_scenes):
         _check_whole(directory)
         files = {file.name: _digest(file) for file in sorted(directory.iterdir())}
         pointer = folder / "current.json.new"
-        pointer.write_text(json.dumps({"format": FORMAT, "set": number, "files": files, "identity": identity}, indent=1))
+        pointer.write_text(json.dumps({"format": FORMAT, "set": number, "files": files, "identity": identity}, indent=1), encoding="utf-8")
         for file in [*directory.iterdir(), pointer]:
             with open(file, "rb") as stream:
                 os.fsync(stream.fileno())
@@ -95,7 +95,7 @@ def load(folder, identity):
     """
     folder = Path(folder)
     try:
-        current = json.loads((folder / "current.json").read_text())
+        current = json.loads((folder / "current.json").read_text(encoding="utf-8"))
     except OSError:
         raise CheckpointError(folder, "an existing checkpoint: there is none to resume from") from None
     except ValueError:

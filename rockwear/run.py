@@ -231,7 +231,7 @@ class Run:
             "peak_memory": {"value": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024, "unit": "bytes"},
         }
         temporary = self.folder / "summary.json.new"
-        temporary.write_text(json.dumps(summary, indent=1, allow_nan=True))
+        temporary.write_text(json.dumps(summary, indent=1, allow_nan=True), encoding="utf-8")
         os.replace(temporary, self.folder / "summary.json")
 
 

@@ -13,4 +13,4 @@ def write(path, points, fields):
     for name, values in fields.items():
         lines += [f"SCALARS {name} double 1", "LOOKUP_TABLE default", *("%.9g" % v for v in np.asarray(values, float))]
     path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text("\n".join(lines) + "\n")
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")

@@ -20,7 +20,7 @@ def test_a_campaign_keeps_what_is_finished_and_shows_it(tmp_path, monkeypatch, c
     rows = uniaxial_figures.read_csv(tmp_path / "uniaxial.csv")
     strength = {(row["test"], row["seed"]): row["peak_stress"] for row in rows}
     assert all(strength["compression", seed] > 1.5 * strength["tension", seed] > 0 for seed in (1, 2))
-    assert "| brittle | 2 |" in (tmp_path / "tables.md").read_text()
+    assert "| brittle | 2 |" in (tmp_path / "tables.md").read_text(encoding="utf-8")
     assert (tmp_path / "over_softening.png").exists()
 
 

@@ -28,7 +28,7 @@ def test_stl_as_text(tmp_path):
     lines = ["solid pick"]
     for facet in ([0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]):
         lines += ["facet normal 0 0 0", "outer loop", *("vertex %g %g %g" % tuple(points[i]) for i in facet), "endloop", "endfacet"]
-    (tmp_path / "pick.stl").write_text("\n".join([*lines, "endsolid pick", ""]))
+    (tmp_path / "pick.stl").write_text("\n".join([*lines, "endsolid pick", ""]), encoding="utf-8")
     assert volume(*read_stl(tmp_path / "pick.stl")) == pytest.approx(1 / 6)
 
 

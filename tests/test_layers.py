@@ -11,7 +11,7 @@ ALLOWED = {"kernels": {"kernels", "materials"}, "engines": {"engines", "kernels"
 def imports(file):
     """Names of the modules that a file imports, our own by their path below rockwear."""
     package = file.relative_to(ROOT).with_suffix("").parts[:-1]
-    for node in ast.walk(ast.parse(file.read_text())):
+    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom):

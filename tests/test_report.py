@@ -62,7 +62,7 @@ def write_history(folder, header, rows, value):
     waves = [value * 1e3 * (1.1 + np.sin(1e3 * time + k)) for k in range(len(header) - 2)]
     table = np.column_stack([time, time > 2e-3, *waves])
     lines = [",".join(header)] + [",".join(f"{x:.10g}" for x in row) for row in table]
-    (folder / "history.csv").write_text("\n".join(lines) + "\n")
+    (folder / "history.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
 def write_summary(folder, heat, value):
@@ -79,12 +79,12 @@ def write_summary(folder, heat, value):
         "results": {name: {"value": number, "unit": unit} for name, (number, unit) in numbers.items()}, "audits": books,
         "wall_time": {"unit": "s", "total": 83.0, "loop": 80.0, "python_engines": 8.0,
                       "by_engine": {"wear": {"seconds": 8.0, "visits": 12}}},
-        "peak_memory": {"value": 3e8, "unit": "bytes"}}))
+        "peak_memory": {"value": 3e8, "unit": "bytes"}}), encoding="utf-8")
 
 
 def read_page(folder):
     """The page of a run, written anew, without its pictures; what it shows must be inside it."""
-    text = report.write(folder).read_text()
+    text = report.write(folder).read_text(encoding="utf-8")
     assert re.findall(r'<img src="(?!data:image/(?:png|gif);base64,[A-Za-z0-9+/=]+")', text) == []
     text = re.sub(r"base64,[A-Za-z0-9+/=]+", "", text)
     assert not re.search(r"https?:|<script|<link|url\(|@import", text)
@@ -141,7 +141,7 @@ def test_a_missing_file_costs_only_its_own_figures(tmp_path, missing):
 
 def test_history_with_a_line_cut_short(tmp_path):
     path = tmp_path / "history.csv"
-    path.write_text("time [s],force [N/m]\n0,1\n1,nan\n2")
+    path.write_text("time [s],force [N/m]\n0,1\n1,nan\n2", encoding="utf-8")
     columns, units = read_history(path)
     np.testing.assert_array_equal(columns["force"], [1, math.nan])
     assert units == {"time": "s", "force": "N/m"}

@@ -21,14 +21,14 @@ def test_only_what_must_hold_fails_the_validation(tmp_path, monkeypatch):
         return validate.main(tmp_path)
 
     assert main(validate.Row("a", 1.0, 1.0, 0.0), validate.Row("b", 1.0, 2.0, 0.1, source=True)) == 0
-    assert "1 differ" in (tmp_path / "validation.html").read_text()
+    assert "1 differ" in (tmp_path / "validation.html").read_text(encoding="utf-8")
     assert main(validate.Row("a", 1.0, 2.0, 0.1)) == 1
-    assert json.loads((tmp_path / "validation.json").read_text())[0]["verdict"] == "FAILS"
+    assert json.loads((tmp_path / "validation.json").read_text(encoding="utf-8"))[0]["verdict"] == "FAILS"
 
 
 def test_a_finished_run_is_kept_only_for_the_same_values(tmp_path):
     assert not finished(tmp_path, {})
-    (tmp_path / "summary.json").write_text(json.dumps({"parameters": {"kn": 2e10, "heat": False, "test": "tension"}}))
+    (tmp_path / "summary.json").write_text(json.dumps({"parameters": {"kn": 2e10, "heat": False, "test": "tension"}}), encoding="utf-8")
     assert finished(tmp_path, {"kn": "2e10", "heat": "false", "test": "tension"})
     assert not finished(tmp_path, {"kn": 1e10}) and not finished(tmp_path, {"kt": 1e10})
 

@@ -44,12 +44,12 @@ def test_errors_propagate_column_by_column(tmp_path):
     """3 % of force, 4 % of depth: 5 % of k; the temperature counts by the slope of H."""
     file = tmp_path / "mine.csv"
     file.write_text("steel,force [kN],area [cm2],distance [km],depth [um],temperature [K],force error [kN],"
-                    "depth error [um]\nMET91,1,1,0.5,500,500,0.03,20\n")
+                    "depth error [um]\nMET91,1,1,0.5,500,500,0.03,20\n", encoding="utf-8")
     (k, u), = fit(read(file))["MET91"]["rows"]
     assert k == pytest.approx(500e-6 * MET91(500.0) / (1e7 * 500), rel=1e-12)
     assert u / k == pytest.approx(0.05, rel=1e-12)
     file.write_text("steel,pressure [MPa],distance [m],depth [mm],temperature [degC],temperature error [K]\n"
-                    "MET91,10,500,0.5,550,10\n")
+                    "MET91,10,500,0.5,550,10\n", encoding="utf-8")
     (k, u), = fit(read(file))["MET91"]["rows"]
     slope = (375 - 247) / 100 * BRINELL
     assert u / k == pytest.approx(10 * slope / MET91(550 + 273.15), rel=1e-9)
@@ -59,7 +59,7 @@ def test_own_steel_by_hardness_and_measured_friction(tmp_path):
     file = tmp_path / "mine.csv"
     lines = [f",{p},{p * 2.5 * 0.4},100,{1e3 * 4.0 * (p / 2000)**1.5 * 100},2000" for p in (5, 10, 20, 30)]
     file.write_text("\ufeffsteel,pressure [MPa],friction [N],distance [m],depth [mm],hardness [MPa],force [N]\n"
-                    + "\n".join(f"{line},{p * 2.5}" for line, p in zip(lines, (5, 10, 20, 30))) + "\n")
+                    + "\n".join(f"{line},{p * 2.5}" for line, p in zip(lines, (5, 10, 20, 30))) + "\n", encoding="utf-8")
     one = fit(read(file), law="power", mu=0.4, exponent=None)[""]
     assert one["law"].k == pytest.approx(4.0, rel=1e-9) and one["exponent"][0] == pytest.approx(1.5, rel=1e-9)
 
@@ -68,7 +68,7 @@ def test_command_line_leaves_numbers_and_a_figure(tmp_path, capsys):
     assert main([str(EXAMPLE), "--out", str(tmp_path / "out")]) == 0
     said = capsys.readouterr().out
     assert "MET71  all tests: k = 0.0024713" in said and "the tests differ by" in said
-    stored = json.loads((tmp_path / "out/wear_fit.json").read_text())
+    stored = json.loads((tmp_path / "out/wear_fit.json").read_text(encoding="utf-8"))
     assert np.shape(stored["steels"]["MET91"]["k_of_each_test"]) == (2,)
     assert (tmp_path / "out/wear_fit.png").stat().st_size > 1e4
 
@@ -85,7 +85,7 @@ def test_command_line_leaves_numbers_and_a_figure(tmp_path, capsys):
     ("steel,pressure [Pa],depth [mm],temperature [K]\nMET71,1e6,1,400\n", "distance = nothing")])
 def test_bad_files_end_in_one_line(tmp_path, capsys, text, words):
     file = tmp_path / "bad.csv"
-    file.write_text(text)
+    file.write_text(text, encoding="utf-8")
     assert main([str(file)]) == 2
     said = capsys.readouterr().err
     assert said.startswith("error: ") and words in said and said.count("\n") == 1

@@ -182,7 +182,7 @@ def write(folder, found, results, values, began):
                             "numpy": np.__version__},
                "results": {name: {"value": value, "unit": unit} for name, (value, unit) in results.items()},
                "audits": {}, "wall_time": {"unit": "s", "total": time.time() - began}}
-    (folder / "summary.json").write_text(json.dumps(summary, indent=1))
+    (folder / "summary.json").write_text(json.dumps(summary, indent=1), encoding="utf-8")
     rows = [(name, f"{value:.6g}", unit) for name, (value, unit) in results.items()]
     table = page.Section("Results", f"YADE must agree with drive to {AGREEMENT:g} of the strength.",
                          [page.table(rows, ("quantity", "value", "unit"))])

@@ -50,7 +50,7 @@ def write_table(path, header, rows):
     """A CSV file: a header of `name [unit]`, then rows of numbers; in place at once or not at all."""
     lines = [",".join(header)] + [",".join(f"{value:.10g}" for value in row) for row in rows]
     temporary = path.with_suffix(".new")
-    temporary.write_text("\n".join(lines) + "\n")
+    temporary.write_text("\n".join(lines) + "\n", encoding="utf-8")
     temporary.replace(path)
 
 

@@ -15,7 +15,7 @@ class RunFolder:
 
     def __init__(self, path):
         self.path = Path(path)
-        self.summary = json.loads((self.path / "summary.json").read_text())
+        self.summary = json.loads((self.path / "summary.json").read_text(encoding="utf-8"))
         self.parameters = self.summary.get("parameters", {})
         self.columns, self.units = read_history(self.path / "history.csv")
         self.model = read_arrays(self.path / "model.npz")
@@ -72,7 +72,7 @@ def read_arrays(path, *names):
 
 def read_history(path):
     """({name: column}, {name: unit}) of a file with a header of `name [unit]`; lines cut short are left out."""
-    lines = path.read_text().splitlines() if path.exists() else []
+    lines = path.read_text(encoding="utf-8").splitlines() if path.exists() else []
     header = [word.strip() for word in lines[0].split(",") if word.strip()] if lines else []
     names = [word.split(" [")[0] for word in header]
     units = [word.split(" [")[1].rstrip("]") if " [" in word else "-" for word in header]

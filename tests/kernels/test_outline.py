@@ -132,7 +132,7 @@ def test_tooth_errors(change, name):
                                   "# a square\n\n x [m], y [m]\n0, 0\n2, 0\n2, 2\n\n0, 2\n"])
 def test_read_outline(tmp_path, text):
     path = tmp_path / "tool.csv"
-    path.write_text(text)
+    path.write_text(text, encoding="utf-8")
     shape = outline.read_outline(path)
     assert shape.shape == (4, 2) and outline.signed_area(shape) == 4
 
@@ -145,7 +145,7 @@ def test_read_outline(tmp_path, text):
 ])
 def test_bad_outlines(tmp_path, text, rule):
     path = tmp_path / "tool.csv"
-    path.write_text(text)
+    path.write_text(text, encoding="utf-8")
     with pytest.raises(ParameterError, match=rule) as error:
         outline.read_outline(path)
     assert error.value.name == "outline" and "\n" not in str(error.value)

@@ -36,7 +36,7 @@ def start(script, words=(), threads=1, **options):
 def finish(process, out=None):
     """Wait for it. -> exit code, what it said, and the summary if there is one."""
     stdout, stderr = process.communicate(timeout=300)
-    summary = json.loads((out / "summary.json").read_text()) if out and (out / "summary.json").exists() else None
+    summary = json.loads((out / "summary.json").read_text(encoding="utf-8")) if out and (out / "summary.json").exists() else None
     return SimpleNamespace(code=process.returncode, stdout=stdout, stderr=stderr, summary=summary, out=out)
 
 
@@ -72,14 +72,14 @@ def interrupt_script(script, out, number, after, **values):
 
 def _progress(out):
     try:
-        return json.loads((out / "checkpoint/current.json").read_text())["set"]
+        return json.loads((out / "checkpoint/current.json").read_text(encoding="utf-8"))["set"]
     except (OSError, ValueError):
         return 0
 
 
 def history(out):
     """{name: column} of a run's history.csv."""
-    lines = (out / "history.csv").read_text().splitlines()
+    lines = (out / "history.csv").read_text(encoding="utf-8").splitlines()
     table = np.array([[float(cell) for cell in line.split(",")] for line in lines[1:]])
     return {name: table[:, i] for i, name in enumerate(lines[0].split(","))}
 

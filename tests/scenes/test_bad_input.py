@@ -85,7 +85,7 @@ def test_bad_command_line(words, expected, tmp_path):
     ("0,0\n1,0\n", "outline"), ("0,0\n0.02,0.02\n0.02,0\n0,0.02\n", "outline"), ("x,y\n0,0\n1,a\n0,1\n", "outline")])
 def test_bad_outline(rows, expected, tmp_path):
     file = tmp_path / "tooth.csv"
-    file.write_text(rows)
+    file.write_text(rows, encoding="utf-8")
     run = run_script(SCRIPT, *arguments({**SMALL, "out": tmp_path / "out", "outline": file}))
     one_line(run, expected)
     assert os.listdir(tmp_path) == ["tooth.csv"]

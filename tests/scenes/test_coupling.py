@@ -17,7 +17,7 @@ def found(tmp_path_factory):
     run = run_script(ROOT / "tests/scenes/scripts/coupling.py", "free", "constrained", "followed", "heated_disc",
                      "staggered", "sliding_block", file)
     assert run.code == 0, run.stderr
-    return json.loads(file.read_text())
+    return json.loads(file.read_text(encoding="utf-8"))
 
 
 def test_free_heating_leaves_no_stress(found):

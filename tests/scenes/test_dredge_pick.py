@@ -74,13 +74,13 @@ def test_each_cut_is_into_fresh_rock(turns):
     rows = stages(turns)
     broken = {cut: rows[cut]["tensile_cracks"] + rows[cut]["shear_cracks"] for cut in (1, 2, 3)}
     assert broken[3][0] < 0.5 * broken[1][-1] and broken[2][0] == broken[2][-1] >= broken[1][-1]
-    logged = len((turns.out / "cracks.csv").read_text().splitlines()) - 1
+    logged = len((turns.out / "cracks.csv").read_text(encoding="utf-8").splitlines()) - 1
     assert logged == broken[2][-1] + value(turns, "tensile_cracks") + value(turns, "shear_cracks")
 
 
 def test_repeated_turns_rise_and_level_off(turns):
     table = np.array([[float(cell) for cell in line.split(",")]
-                      for line in (turns.out / "turns.csv").read_text().splitlines()[1:]])
+                      for line in (turns.out / "turns.csv").read_text(encoding="utf-8").splitlines()[1:]])
     peak, absorbed, released = table[:, 1], table[:, 4], table[:, 5]
     rise = np.diff(peak)
     assert np.all(rise > 0) and rise[-1] < 0.02 * rise[0]
@@ -106,7 +106,7 @@ def test_killed_in_the_water_and_resumed_equals_never_stopped(turns, tmp_path):
 def checkpoint_stage(out):
     """Stage of the present checkpoint, once some of it has passed; -1 without one."""
     try:
-        folder = out / "checkpoint" / str(json.loads((out / "checkpoint/current.json").read_text())["set"])
+        folder = out / "checkpoint" / str(json.loads((out / "checkpoint/current.json").read_text(encoding="utf-8"))["set"])
         with np.load(folder / "state.npz") as state:
             return int(state["scene/stage"]) if state["scene/cooled"] > 0 else -1
     except (OSError, ValueError, KeyError):

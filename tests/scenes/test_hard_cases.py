@@ -13,7 +13,7 @@ def checks(tmp_path_factory):
     file = tmp_path_factory.mktemp("hard_cases") / "checks.json"
     done = run_script(ROOT / "tests/scenes/scripts/hard_cases.py", str(file))
     assert done.code == 0, done.stderr
-    return json.loads(file.read_text())
+    return json.loads(file.read_text(encoding="utf-8"))
 
 
 @pytest.mark.parametrize("kind", ["torn in one step", "torn in a few steps", "sheared", "crushed"])

@@ -113,7 +113,7 @@ def test_softening_bonds_stopped_past_their_peak_and_resumed_equal_never_stopped
     out = tmp_path / "out"
     stopped = interrupt_script(SCRIPT, out, signal.SIGTERM, 4, **{**SMALL, **options, "checkpoint_interval": 0.01})
     assert stopped.code == 128 + signal.SIGTERM
-    current = json.loads((out / "checkpoint/current.json").read_text())
+    current = json.loads((out / "checkpoint/current.json").read_text(encoding="utf-8"))
     with np.load(out / "checkpoint" / str(current["set"]) / "state.npz") as state:
         softened = [len(state[f"scene/engines/bonds/{group}"]) for group in ("carried", "resting")]
         assert sum(softened) > 3

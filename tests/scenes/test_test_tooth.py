@@ -128,7 +128,7 @@ def test_truncated_and_foreign_checkpoints_are_refused(tmp_path):
     scene.write_bytes(scene.read_bytes()[:1000])
     cut_short = test_tooth(out, "--resume", **TINY)
     assert cut_short.code == 2 and "scene.yade.gz is missing or damaged" in cut_short.stderr
-    (out / "checkpoint/current.json").write_text("{")
+    (out / "checkpoint/current.json").write_text("{", encoding="utf-8")
     assert test_tooth(out, "--resume", **TINY).code == 2
     for run in (foreign, cut_short):
         errors = [line for line in run.stderr.splitlines() if line.startswith("error: ")]
@@ -168,11 +168,11 @@ def test_a_table_of_yade_batch_gives_a_folder_a_row(tmp_path):
     values = {**SMALL, **TINY}
     table.write_text(" ".join(["description", *values, "Rn", "out"]) + "\n"
                      + " ".join(["weak", *map(str, values.values()), "0.1e6", str(tmp_path / "sweep")]) + "\n"
-                     + " ".join(["strong", *map(str, values.values()), "0.2e6", str(tmp_path / "sweep")]) + "\n")
+                     + " ".join(["strong", *map(str, values.values()), "0.2e6", str(tmp_path / "sweep")]) + "\n", encoding="utf-8")
     done = subprocess.run(["yade-batch", "-j2", "--job-threads=1", f"--log={tmp_path}/@.log", str(table),
                            str(ROOT / "yade_scripts/test_tooth.py")],
                           cwd=tmp_path, capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=120)
-    found = {name: json.loads((tmp_path / "sweep" / name / "summary.json").read_text())["parameters"]["Rn"]
+    found = {name: json.loads((tmp_path / "sweep" / name / "summary.json").read_text(encoding="utf-8"))["parameters"]["Rn"]
              for name in ("weak", "strong")}
     assert found == {"weak": 0.1e6, "strong": 0.2e6}, done.stdout + done.stderr
 
@@ -192,7 +192,7 @@ def test_every_cycle_starts_on_the_rock_that_the_start_up_left(tmp_path):
 
 
 def test_every_crack_is_logged_with_place_mode_and_energy(cut):
-    lines = (cut.out / "cracks.csv").read_text().splitlines()
+    lines = (cut.out / "cracks.csv").read_text(encoding="utf-8").splitlines()
     assert lines[0].startswith("time [s],x [m],y [m],z [m],normal_x [-]") and "energy [J]" in lines[0]
     table = np.array([[float(cell) for cell in line.split(",")] for line in lines[1:]])
     assert len(table) == value(cut, "tensile_cracks") + value(cut, "shear_cracks")
@@ -205,7 +205,7 @@ def test_every_crack_is_logged_with_place_mode_and_energy(cut):
 
 def test_vtk_on_request(tmp_path):
     run = test_tooth(tmp_path / "out", "--vtk", **TINY)
-    lines = sorted((run.out / "vtk").glob("tool.*.vtk"))[-1].read_text().splitlines()
+    lines = sorted((run.out / "vtk").glob("tool.*.vtk"))[-1].read_text(encoding="utf-8").splitlines()
     count = int(lines[4].split()[1])
     assert count == value(run, "tool_particles") - value(run, "particles_removed") and "SCALARS temperature double 1" in lines
     assert len(lines) == 5 + count + 1 + count + 1 + 3 * (2 + count)
@@ -239,7 +239,7 @@ def test_wear_can_be_booked_without_any_change_of_shape(tmp_path):
 
 def test_accelerated_wear_says_how_far_to_trust_it(cut):
     """The run's own statistics, put together from what it left in its folder."""
-    lines = (cut.out / "wear_profile.csv").read_text().splitlines()
+    lines = (cut.out / "wear_profile.csv").read_text(encoding="utf-8").splitlines()
     increments = np.array([[float(cell) for cell in line.split(",")] for line in lines[1:]])
     assert increments.sum() == pytest.approx(value(cut, "worn_volume"), rel=1e-9)
     assert value(cut, "wear_distribution_error") > 0.05

@@ -15,7 +15,7 @@ def checks(tmp_path_factory):
     file = tmp_path_factory.mktemp("two_disc") / "checks.json"
     done = run_script(ROOT / "tests/scenes/scripts/two_disc_checks.py", str(file))
     assert done.code == 0, done.stderr
-    return json.loads(file.read_text())
+    return json.loads(file.read_text(encoding="utf-8"))
 
 
 def test_programme_of_the_monograph_for_every_law(checks):

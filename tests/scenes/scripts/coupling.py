@@ -302,7 +302,7 @@ def sliding_block():
         body.state.blockedDOFs = "xyzXYZ"
         bodies[index] = O.bodies.append(body)
     tool = SimpleNamespace(count=discs, radii=np.full(discs, radius), mounted=np.zeros(discs, bool), body_of=bodies,
-                           ids=list(bodies.values()), velocities={index: (0.0, 0.0) for index in bodies}, spin=0.0)
+                           ids=list(bodies.values()), velocity_at=lambda *contact: (0.0, 0.0, 0.0))
     bonds = Bonds(pairs=rock.pairs, law=UNBREAKABLE, clock=lambda: O.time)
     motion = Foresight(masses=rock.masses, inertias=rock.inertias, radii=rock.radii, held=rock.supported)
     friction = RockFriction(bonds=bonds, motion=motion)
@@ -343,7 +343,7 @@ def sliding_block():
 
 CHECKS = {check.__name__: check for check in (free, constrained, followed, heated_disc, staggered, sliding_block)}
 *wanted, file = sys.argv[1:]
-with open(file, "w") as stream:
+with open(file, "w", encoding="utf-8") as stream:
     json.dump({name: CHECKS[name]() for name in wanted}, stream)
 sys.stdout.flush()
 os._exit(0)

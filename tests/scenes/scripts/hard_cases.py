@@ -188,7 +188,7 @@ checks = {
     "cycled": {name: cycled(law) for name, law in LAWS.items()},
     "cycled without new normals": cycled_without_new_normals(),
 }
-with open(sys.argv[-1], "w") as file:
+with open(sys.argv[-1], "w", encoding="utf-8") as file:
     json.dump(checks, file, indent=1)
 sys.stdout.flush()
 os._exit(0)

@@ -231,5 +231,5 @@ checks = {
     "resuming": {name: resuming(law) for name, law in LAWS.items()},
     "broken on purpose": broken_on_purpose(),
 }
-with open(sys.argv[-1], "w") as file:
+with open(sys.argv[-1], "w", encoding="utf-8") as file:
     json.dump(checks, file, indent=1)
