@@ -10,7 +10,7 @@ from rockwear.kernels.boundary import nearest_on_triangle, prism, volume
 from rockwear.kernels.checks import ParameterError
 from rockwear.kernels.outline import tooth
 
-pytest.importorskip("stl", reason="needs the Debian package python3-stl")
+
 TOOTH = tooth(height=0.07, width=0.045, rake=0.1, clearance=math.radians(5), tip_radius=4e-3)
 
 
