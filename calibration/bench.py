@@ -140,6 +140,18 @@ def markdown(result):
     return "\n".join(lines)
 
 
+def law_costs(folder):
+    """Lines on what softening bonds cost, from calibration/law_cost.py."""
+    subprocess.run(["yade", "-n", "-x", "-j1", str(ROOT / "calibration/law_cost.py"), "--out", str(folder / "law_cost")],
+                   check=True, capture_output=True, stdin=subprocess.DEVNULL)
+    found = json.loads((folder / "law_cost/law_cost.json").read_text(encoding="utf-8"))
+    return ["", "## Bond laws", "", f"Uniaxial compression to failure, the laws in turns, {found['turns']} times, medians.", "",
+            "| law | H, N/m | share of bonds past the peak: mean | at the end | ms a step | over brittle: wall | processor |",
+            "|---|---|---|---|---|---|---|",
+            *(f"| {row['law']} | {row['H'] or '–'} | {row['past_peak_mean']:.3f} | {row['past_peak_end']:.3f} | "
+              f"{row['ms_a_step_wall']:.2f} | {row['ratio_wall']:.2f} | {row['ratio_cpu']:.2f} |" for row in found["rows"]), ""]
+
+
 def main(folder):
     """All curves, the figure and the numbers."""
     folder.mkdir(parents=True, exist_ok=True)
@@ -176,7 +188,7 @@ def main(folder):
     result = {"sampling": sampling, "heat": heat, "step": step, "overhead": overhead,
               "seeds": {name: over_seeds(found) for name, found in seeds.items()}}
     (folder / "bench.json").write_text(json.dumps(result, indent=1), encoding="utf-8")
-    text = "\n".join([markdown(result), *loading_speed.curve(folder), *heat_study.curve(folder)])
+    text = "\n".join([markdown(result), *law_costs(folder), *loading_speed.curve(folder), *heat_study.curve(folder)])
     (folder / "bench.md").write_text(text, encoding="utf-8")
     print(text)
 
