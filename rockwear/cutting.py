@@ -247,6 +247,9 @@ class Cutting(scene.Scene):
         highest = math.hypot(2 / self.bonded_step, math.sqrt(2 * v.tool_kn / float(rock.masses[free].min())))
         xi = v.contact_damping
         self.contact_step = min(exact, 2 / highest * (math.sqrt(1 + xi * xi) - xi))
+        self._take_time_step(v)
+
+    def _take_time_step(self, v):
         self.critical_step = min(self.bonded_step, self.contact_step)
         if v.time_step > 0:
             require(v.time_step <= self.critical_step, "time_step", v.time_step,

@@ -112,14 +112,19 @@ class Specimen:
         self.inertias = 0.5 * self.masses * self.radii**2
         self.supported = np.zeros(self.count, bool)
 
-    def support(self, *faces, below=math.inf):
-        """Hold the particles that touch these faces ("bottom", "left", "right") of the box, below a height (m)."""
-        x, y, r = *self.positions.T, self.radii * 1.05
-        touches = {"bottom": y < r, "left": x < r, "right": x > self.width - r}
+    def support(self, *faces, below=math.inf, within=1.05):
+        """Hold the particles with centres `within` so many radii of these faces ("bottom", "left", "right") of the box,
+        below a height (m): within 1.05 are those that touch it."""
+        y, touches = self.positions[:, 1], self._near_faces(within * self.radii)
         for face in faces:
             if face not in touches:
                 raise ParameterError("support", face, f"one of {', '.join(touches)}")
             self.supported |= touches[face] & (y < below)
+
+    def _near_faces(self, reach):
+        """{face: (n,) bool, which particles have their centres within `reach` (n,) m of it}."""
+        x, y = self.positions.T[:2]
+        return {"bottom": y < reach, "left": x < reach, "right": x > self.width - reach}
 
     def report(self):
         """{name: (value, unit)}: how the packing came out."""
@@ -136,10 +141,10 @@ class Specimen:
         return cells(self.positions, box=(self.width, self.height))
 
     def current_positions(self):
-        """(n, 2) m, of the particles in YADE now, by its one bulk read."""
+        """(n, d) m, of the particles in YADE now, by its one bulk read."""
         from yade import Subdomain
         values = np.fromiter(Subdomain().getStateValuesFromIds(list(range(self.count))), float)
-        return values.reshape(self.count, 13)[:, :2]
+        return values.reshape(self.count, 13)[:, :self.positions.shape[1]]
 
 
 class CutOut(Specimen):
@@ -177,3 +182,65 @@ class Arranged(Specimen):
         self._weigh(density)
         self.pairs = packing.contacts(self.positions, self.radii, 1e-6 * radius)
         self.strength_factor = np.ones(len(self.pairs))
+
+
+class Block(Specimen):
+    """A box of equal spheres: x from 0 to `width` along the cut, y from 0 to `height` upwards, z across by `depth`,
+    centred at z = 0, all m.
+
+    radius: m; porosity: 1 - sum of volumes over the box's volume; bonding_gap: m; density: kg/m3 of the bulk. With
+    bonded=False nothing is bonded, and the box and all distances are enlarged until no two spheres overlap: a loose
+    fill that gravity has still to settle. Raises ParameterError naming the parameter.
+    """
+
+    def __init__(self, *, width, height, depth, radius, porosity, seed, bonding_gap, density, bonded=True):
+        box = positive("width", width, "m"), positive("height", height, "m"), positive("depth", depth, "m")
+        not_negative("bonding_gap", bonding_gap, "m")
+
+        def make():
+            made = packing.pack(box=box, radius_min=radius, radius_max=radius, porosity=porosity, seed=seed)
+            return {"positions": made.positions, "radii": made.radii}
+
+        stored = cached(make, box=list(box), radius=radius, porosity=porosity, seed=seed)
+        places, self.radii = stored["positions"], stored["radii"]
+        self.loosened = 1.0 if bonded else self._clear(places)
+        self.width, self.height, self.depth = (self.loosened * length for length in box)
+        self.positions = self.loosened * (places - (0.0, 0.0, 0.5 * depth))
+        self._weigh(density)
+        near = self.near(bonding_gap)
+        require(not bonded or len(near) > self.count, "bonding_gap", bonding_gap, "large enough to bond the packing", "m")
+        self.pairs = near if bonded else near[:0]
+        self.strength_factor = np.ones(len(self.pairs))
+
+    def _clear(self, places):
+        """Factor on all distances that leaves no overlap."""
+        i, j = packing.contacts(places, self.radii).T
+        distance = np.linalg.norm(places[i] - places[j], axis=1)
+        return 1 + 1e-9 + float(np.max((self.radii[i] + self.radii[j]) / distance - 1, initial=0.0))
+
+    def _weigh(self, density):
+        self.density, self.count = density, len(self.radii)
+        volumes = packing.volumes(self.radii, 3)
+        self.porosity = 1 - float(volumes.sum()) / (self.width * self.height * self.depth)
+        self.masses = density / (1 - self.porosity) * volumes
+        self.inertias = 0.4 * self.masses * self.radii**2
+        self.supported = np.zeros(self.count, bool)
+
+    def _near_faces(self, reach):
+        z = self.positions[:, 2]
+        return {**super()._near_faces(reach), "front": z > 0.5 * self.depth - reach, "back": z < reach - 0.5 * self.depth}
+
+    def leave_out(self, gone):
+        """Take particles (n,) bool out of the box, which keeps its size, as long as nothing is bonded."""
+        for name in ("positions", "radii", "masses", "inertias", "supported"):
+            setattr(self, name, getattr(self, name)[~gone])
+        self.count = len(self.radii)
+
+    def near(self, gap):
+        """Pairs (m, 2) of particles whose gap was at most so wide (m) before the block was loosened."""
+        return packing.contacts(self.positions, self.radii, gap + (self.loosened - 1) * (2 * self.radii.max() + gap))
+
+    def report(self):
+        if len(self.pairs):
+            return super().report()
+        return {"particles": (self.count, "-"), "porosity": (self.porosity, "-")}

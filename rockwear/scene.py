@@ -47,7 +47,8 @@ def put_rock(rock):
     """The specimen's particles as bodies 0..n-1, its supported ones held."""
     for position, radius, mass, inertia, held in zip(rock.positions.tolist(), rock.radii.tolist(), rock.masses.tolist(),
                                                      rock.inertias.tolist(), rock.supported):
-        body = finite_disc(position, radius, material="bonding rock", mask=ROCK_MASK, mass=mass, inertia=inertia)
+        particle = finite_disc if len(position) == 2 else sphere
+        body = particle(position, radius, material="bonding rock", mask=ROCK_MASK, mass=mass, inertia=inertia)
         if held:
             body.state.blockedDOFs = "xyzXYZ"
         O.bodies.append(body)
@@ -111,9 +112,15 @@ def make_bonds(rock, bonds):
 
 def finite_disc(position, radius, *, material, mask, mass, inertia):
     """A disc of unit thickness: a YADE sphere that stays in the plane, with a disc's mass and inertia."""
-    body = utils.sphere((*position, 0.0), radius, material=material, mask=mask)
-    body.state.mass, body.state.inertia = mass, (inertia,) * 3
+    body = sphere((*position, 0.0), radius, material=material, mask=mask, mass=mass, inertia=inertia)
     body.state.blockedDOFs = "zXY"
+    return body
+
+
+def sphere(position, radius, *, material, mask, mass, inertia):
+    """A sphere in space."""
+    body = utils.sphere(position, radius, material=material, mask=mask)
+    body.state.mass, body.state.inertia = mass, (inertia,) * 3
     return body
 
 
@@ -180,6 +187,12 @@ class ToolBodies:
         self.velocities[index] = (velocity[0] - self.spin * (y - origin[1]), velocity[1] + self.spin * (x - origin[0]))
         state.vel = (*self.velocities[index], 0.0)
 
+    def go_on(self, velocity):
+        """Move straight on at another velocity (2,), m/s."""
+        for index, body in self.body_of.items():
+            self.velocities[index] = tuple(velocity)
+            O.bodies[body].state.vel = (*velocity, 0.0)
+
     def velocity_at(self, index, interaction, tool_first):
         """(vx, vy, vz) m/s of the tool where this contact of particle `index` is."""
         vx, vy = self.velocities[index]
@@ -222,6 +235,18 @@ class ToolBodies:
         self.ids = list(self.body_of.values())
         self.pose = Pose(state["offset"].copy(), float(state["turn"]))
         self.velocities = {}
+
+
+class SphereBodies(ToolBodies):
+    """The skin of a tool of spheres, led in the plane of the cut. tool: a tool.LayeredTool."""
+
+    def __init__(self, tool, motion):
+        super().__init__(tool, motion)
+        self.positions = tool.positions[:, :2]
+
+    def _body(self, index, x, y):
+        place = x, y, float(self.tool.positions[index, 2])
+        return sphere(place, float(self.tool.radii[index]), material="steel", mask=TOOL_MASK, mass=0.0, inertia=0.0)
 
 
 class FacetBodies(ToolBodies):

@@ -6,7 +6,7 @@ from scipy.spatial import cKDTree
 
 from .kernels import outline, packing
 from .kernels.cells import cells
-from .kernels.checks import positive
+from .kernels.checks import positive, require
 from .kernels.conduction import calibrated_conductance
 from .kernels.erosion import Erosion
 from .rock import cached
@@ -88,3 +88,46 @@ class Tool:
         """Largest x reached by particles with any part below the height `below` (both m, in the tool's own frame)."""
         low = self.positions[:, 1] - self.radii < below
         return float((self.positions[low, 0] + self.radii[low]).max())
+
+
+class LayeredTool:
+    """Spheres of one radius (m) that fill an outline (k, 2) m drawn out across the cut.
+
+    They lie in equal layers a diameter apart, about z = 0: each is the same packing of the outline, whose outermost
+    particles touch its sides. So the faces are as smooth as spheres can make them. Layers fill `breadth` (m) but for
+    less than a diameter. Every sphere stands for the same part of the tool's volume. `mounted` marks those at the top,
+    where the shank holds the tool; everything else at the boundary is skin. removal: of kernels.erosion.
+    """
+
+    def __init__(self, *, vertices, radius, breadth, seed, removal, density):
+        positive("tool_radius", radius, "m")
+        self.vertices, self.density = np.asarray(vertices, float), density
+        layers = int(positive("breadth", breadth, "m") / (2 * radius) + 1e-9)
+        require(layers > 1, "breadth", breadth, f"at least two particles, {4 * radius:g}", "m")
+        stored = cached(lambda: self._fill(radius, seed), section=self.vertices.tolist(), radius=radius, seed=seed,
+                        porosity=POROSITY, gap=NEIGHBOUR_GAP, nearest=NEAREST)
+        self.breadth = 2 * radius * layers
+        self._stack(stored["positions"], layers, float(stored["radii"][0]))
+        self.area = outline.area(self.vertices) * self.breadth
+        self.volumes = np.full(self.count, self.area / self.count)
+        self.masses = density * self.volumes
+        number, one = np.arange(self.count), len(stored["radii"])
+        pairs = np.vstack([*(stored["pairs"] + one * layer for layer in range(layers)),
+                           np.column_stack([number[:-one], number[one:]])])
+        self.mounted = self.positions[:, 1] > self.vertices[:, 1].max() - 1.5 * self.radii
+        outermost = (number < one) | (number >= self.count - one) | np.tile(stored["at_boundary"], layers)
+        self.erosion = Erosion(radii=self.radii, volumes=self.volumes, pairs=pairs, thickness=2 * self.radii,
+                               skin=np.flatnonzero(outermost & ~self.mounted), anchored=np.flatnonzero(self.mounted),
+                               rule=removal)
+
+    def _fill(self, radius, seed):
+        filled = packing.pack(polygon=self.vertices, radius_min=radius, radius_max=radius, porosity=POROSITY, seed=seed)
+        distance = -outline.signed_distance(filled.positions, self.vertices)
+        return {"positions": filled.positions, "radii": filled.radii, "pairs": neighbours(filled.positions, filled.radii),
+                "at_boundary": distance < 1.3 * filled.radii}
+
+    def _stack(self, places, layers, radius):
+        z = 2 * radius * (np.arange(layers) - 0.5 * (layers - 1))
+        self.positions = np.column_stack([np.tile(places, (layers, 1)), np.repeat(z, len(places))])
+        self.count = len(self.positions)
+        self.radii = np.full(self.count, radius)

@@ -8,7 +8,7 @@ from rockwear import rock, tool
 from rockwear.kernels.checks import ParameterError
 from rockwear.kernels.conduction import effective_conductivity
 from rockwear.kernels.outline import area, tooth
-from rockwear.kernels.packing import pack
+from rockwear.kernels.packing import contacts, pack
 from rockwear.materials import STEEL
 
 M_SPECIMEN = dict(width=0.109, height=0.109, radius_min=1e-3, radius_max=1.5e-3, porosity=0.12, bonding_gap=1e-4, density=2500)
@@ -93,3 +93,24 @@ def test_tool_conducts_like_steel():
         found.append(effective_conductivity(positions=square.positions, conductance=made.conductance,
                                             edges=tool.neighbours(square.positions, square.radii)).mean())
     assert np.mean(found) == pytest.approx(60, rel=0.03)
+
+
+def test_a_block_of_spheres_has_the_mass_of_its_bulk_and_five_faces_to_hold():
+    block = rock.Block(width=0.12, height=0.1, depth=0.11, radius=6e-3, porosity=0.4, seed=1, bonding_gap=1e-4, density=2500.0)
+    assert block.masses.sum() == pytest.approx(2500 * 0.12 * 0.1 * 0.11, rel=1e-12)
+    assert np.allclose(block.inertias, 0.4 * block.masses * block.radii**2, rtol=1e-12)
+    for face, axis, side in (("front", 2, 0.055), ("back", 2, -0.055), ("left", 0, 0.0), ("right", 0, 0.12), ("bottom", 1, 0.0)):
+        block.supported[:] = False
+        block.support(face)
+        gap = np.abs(block.positions[:, axis] - side) - block.radii
+        assert block.supported.any() and (gap[block.supported] < 0.06 * 6e-3).all() and (gap[~block.supported] > 0).all()
+
+
+def test_a_loose_block_has_no_bonds_and_no_overlap_and_can_leave_spheres_out():
+    block = rock.Block(width=0.12, height=0.1, depth=0.11, radius=6e-3, porosity=0.4, seed=2, bonding_gap=0.0, density=2500.0,
+                       bonded=False)
+    assert len(block.pairs) == 0 and len(contacts(block.positions, block.radii)) == 0
+    assert len(block.near(6e-5)) > 2 * block.count
+    high, count = block.positions[:, 1] > 0.05, block.count
+    block.leave_out(high)
+    assert block.count == count - high.sum() == len(block.masses) and (block.positions[:, 1] <= 0.05).all()

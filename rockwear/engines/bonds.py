@@ -14,6 +14,8 @@ UNLIMITED = 1e30
 """A strength (N) that no bond reaches."""
 NO_CHANGE = 1e-13
 """Difference of two forces that is round-off, as a fraction of the force."""
+ROLLED = 0.02
+"""Shear displacement over r_i + r_j from which, in space, the normals no longer tell how long it is."""
 PATIENCE = 8
 """Steps without yielding after which a carried bond goes back to YADE's law. Going back and tripping again costs about
 as much as carrying a bond so long, so that no path costs much more than twice what it must."""
@@ -125,6 +127,15 @@ def _put_wire(phys, wire):
     phys.isCohesive = True
 
 
+def _as_long_as_held(ut, carried):
+    """Tangential displacement `ut` of this step with the length that the strain energy of the last step tells."""
+    phys, increment = carried.phys, carried.geom.shearInc
+    before = ut - increment
+    held = 2.0 * phys.ks * (phys.strainEnergy - 0.5 * carried.Fn**2 / phys.kn)
+    length = math.sqrt(max(held, 0.0)) / phys.ks
+    return before.normalized() * length + increment
+
+
 def _strain_energy(phys):
     """Strain energy (J) of a contact, Fn^2/2kn + Ft^2/2kt."""
     return 0.5 * (phys.normalForce.squaredNorm() / phys.kn + phys.shearForce.squaredNorm() / phys.ks)
@@ -154,7 +165,9 @@ class Bonds(Engine):
     Where a wire is tripped YADE's law forgets the shear force, or cuts it. What it was follows from where the two
     bodies have turned since they were bonded; a bond that has slipped, and goes to rest, counts as bonded anew, with
     the normals that give its elastic displacement. That is exact in 2D; in 3D its error grows with the cube of the
-    angle, and is below 1e-6 of the strength where Rt/kt is 5 thousandths of a radius.
+    angle, and is below 1e-6 of the strength where Rt/kt is 5 thousandths of a radius. Spheres that have rolled far on each
+    other do not come back as they were: from ROLLED on only the direction is taken from the normals, and the length from
+    the strain energy that YADE's law kept of the step before.
     """
 
     name = "bonds"
@@ -264,7 +277,10 @@ class Bonds(Engine):
         carried.un = carried.length - geom.penetrationDepth - (second.vel - first.vel).dot(geom.normal) * O.dt
         carried.Fn = phys.kn * (carried.un - bond.un_plastic)
         softening = bond.softening
-        spent = carried.advance(self._shear_displacement(n, geom, first, second), O.forces)
+        ut = self._shear_displacement(n, geom, first, second)
+        if self.normals[n, :, 2].any() and ut.norm() > ROLLED * sum(carried.radii):
+            ut = _as_long_as_held(ut, carried)
+        spent = carried.advance(ut, O.forces)
         if bond.softening == softening:
             # The wire lies within the strength, or where an elastic stiffness changes.
             self._rest(n, carried)

@@ -179,7 +179,7 @@ class Wear(Engine):
         if not rubbed.any():
             return
         self.work_used += float(slid[WORK].sum())
-        volume = self.law.volume(slid, self.hardness(self.temperature()), 2 * self.erosion.radii)
+        volume = self.law.volume(slid, self.hardness(self.temperature()), self.erosion.areas)
         removed, uncovered = self.erosion.wear(volume)
         if removed:
             self._remove(removed, uncovered)

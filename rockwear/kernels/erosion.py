@@ -32,7 +32,8 @@ class Erosion:
 
     radii: (n,) m; volumes: (n,) m3, the part of the body's volume that each particle stands for; pairs: (m, 2) touching
     particles; skin: indices of particles open to wear at first; anchored: indices of those held by the shank;
-    rule: "volume" (conserving: the excess over a particle's volume passes to what its removal uncovers, so that
+    thickness: m, one or (n,), of what a particle stands for across: 1 in the plane, 2 r for a sphere, whose face is
+    then the square (2 r)^2; rule: "volume" (conserving: the excess over a particle's volume passes to what its removal uncovers, so that
     removed + stored = Archard's volume at every moment), "depth" (the sources': no excess is passed on) or "none".
     `worn` is the volume that the wear law took from each particle, `stored` what of it has not led to a removal yet.
     Raises ParameterError for an unknown rule, an index out of range, or volumes that are not positive.
@@ -50,6 +51,7 @@ class Erosion:
                 raise ParameterError(name, int(indices.max()), f"an index from 0 to {count - 1}")
         self.rule, self.conserving = rule, rule == "volume"
         self.limit = REMOVAL[rule](self.radii, self.volumes, thickness)
+        self.areas = 2 * self.radii * thickness
         self.anchored = np.zeros(count, bool)
         self.anchored[np.asarray(anchored, int)] = True
         self.alive = np.ones(count, bool)

@@ -6,7 +6,7 @@ Needs numpy, scipy and matplotlib, no YADE, so that a run can be looked at anywh
 """
 import matplotlib
 
-from . import cutting, dredging, heat, laboratory, plots, segments, temperatures, wear_test
+from . import cutting, dredging, heat, laboratory, plots, segments, space, temperatures, wear_test
 from .folder import RunFolder
 from .page import Section, parameters, whole_page, whole_results
 
@@ -15,7 +15,7 @@ def write(folder):
     """Draw figures/* and report.html of the run in `folder` from what is there already. -> path of the page."""
     run = RunFolder(folder)
     with matplotlib.rc_context(plots.STYLE):
-        kinds = temperatures, dredging, cutting, segments, laboratory, wear_test, heat
+        kinds = space, temperatures, dredging, cutting, segments, laboratory, wear_test, heat
         sections = next((kind.sections(run) for kind in kinds if kind.shows(run)), None) or general(run)
         text = whole_page(run, sections + [whole_results(run), parameters(run)])
     path = run.path / "report.html"

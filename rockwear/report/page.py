@@ -5,7 +5,7 @@ import math
 from dataclasses import dataclass, field
 
 SHOWN = {"N/m": ("kN/m", 1e-3, 0.0), "s": ("ms", 1e3, 0.0), "K": ("°C", 1.0, -273.15), "J/m3": ("MJ/m³", 1e-6, 0.0),
-         "m": ("mm", 1e3, 0.0), "m3": ("mm³/mm", 1e6, 0.0), "m3/m": ("mm³/mm", 1e6, 0.0), "bytes": ("MB", 1e-6, 0.0),
+         "m": ("mm", 1e3, 0.0), "m3": ("cm³", 1e6, 0.0), "m3/m": ("mm³/mm", 1e6, 0.0), "bytes": ("MB", 1e-6, 0.0),
          "Pa": ("MPa", 1e-6, 0.0), "-": ("", 1.0, 0.0)}
 """How a unit of the files is shown: unit, factor, and what is added after it."""
 

@@ -1,0 +1,332 @@
+"""Figures of a cut in space: rock and tooth from the side and in perspective, forces, wear on the tooth, its shape."""
+import math
+
+import numpy as np
+from matplotlib import colormaps
+from matplotlib.cm import ScalarMappable
+from matplotlib.collections import PolyCollection
+from matplotlib.colors import LinearSegmentedColormap, Normalize, to_rgb
+
+from . import shapes
+from .cutting import CRACK, DAMAGE, LOOSE, PALE, STEEL, SUPPORT
+from .page import Section, machine_tiles, number, percent, quantity, tiles
+from .plots import MM, MS, books, canvas, running_mean, save, spread
+
+CORNERS = 14
+"""Of the polygon that stands for a sphere."""
+SIDE, ABOVE, BELOW = (0.0, 0.0), (32.0, 28.0), (55.0, -25.0)
+"""Where one looks from: azimuth from the side to the front and elevation, degrees."""
+WEAR = LinearSegmentedColormap.from_list("wear", ["#d9dde0", "#fdd873", "#f58a3c", "#c8252c", "#54093a"])
+M_DEPTH = 0.14e-3
+"""m, maximum wear depth of M 13.3 (model II)."""
+
+
+def shows(run):
+    """True for a run in a block of spheres with at least one snapshot."""
+    return "block" in run.model and len(run.times) > 0
+
+
+def sections(run):
+    """The sections of the page, in order."""
+    def drawn(figure):
+        return save(run, figure.__name__, figure(run))
+
+    rock = ("Colour: how far each sphere has moved; grey ones are held." if loose(run) else
+            "Blue: pieces that no chain of bonds joins to the support. The darker a sphere, the more of its bonds are "
+            "gone. Grey: held.")
+    return [
+        Section("Key results", summary_line(run), [key_results(run)]),
+        Section("The cut in perspective", rock, [drawn(perspective)]),
+        Section("The cut from the side", f"The slab that the tooth runs through, its nearer half taken away. {rock}", [drawn(side)]),
+        Section("Forces, work and wear over time", "Thin lines are the record, thick ones a running mean.", [drawn(forces)]),
+        Section("Wear of the tooth", "Depth worn off each particle that is left: volume over the square that it shows.",
+                [drawn(wear), drawn(wear_over_height)]),
+        Section("Shape of the tooth at stages, and the particles removed", "Red: removed particles, where they were.",
+                [drawn(stages_of_wear)]),
+        books(run)]
+
+
+def loose(run):
+    """True where nothing was ever bonded."""
+    return len(run.model["bonds"]) == 0
+
+
+def has_particles(run):
+    """True for a tooth of particles."""
+    return "tool_positions" in run.model
+
+
+# ---- numbers
+
+def summary_line(run):
+    """The run in a line."""
+    def value(name, unit):
+        return quantity(run.parameter(name, math.nan), unit)
+
+    return (f"{value('velocity', 'm/s')}, depth of cut {value('depth_of_cut', 'm')}, "
+            f"{quantity(run.result('simulated_time'), 's')} simulated, radii {number(run.result('coarsening'))} times those "
+            "of the source.")
+
+
+def key_results(run):
+    """The numbers an engineer looks for first."""
+    energy = run.summary.get("audits", {}).get("energy", {})
+    step, critical = run.result("time_step"), run.result("critical_time_step")
+    wears = run.result("worn_volume") > 0
+    tool = f"{run.result('tool_particles')} particles" if has_particles(run) else f"{run.result('facets')} triangles"
+    return tiles([
+        *[(label, quantity(run.result(name), "N"), "while it cuts") for label, name in (
+            ("mean cutting force", "mean_cutting_force"), ("peak cutting force", "peak_cutting_force"),
+            ("mean thrust force", "mean_thrust_force"))],
+        *([("maximum wear depth", quantity(run.result("maximum_wear_depth"), "m"), f"M 13.3: {quantity(M_DEPTH, 'm')}"),
+           ("mass lost", percent(run.result("mass_lost"), 1.0), f"{run.result('particles_removed')} particles removed")]
+          if wears and has_particles(run) else []),
+        *([] if loose(run) else [("cracks", f"{run.result('tensile_cracks')} + {run.result('shear_cracks')}", "tensile + shear")]),
+        ("spheres of rock", number(run.result("rock_particles")), f"tooth: {tool}"),
+        ("time step", f"{number(1e6 * step)} µs", f"{percent(step, critical)} of the critical"),
+        ("energy residual", percent(energy.get("residual", math.nan), energy.get("tool_work", 0.0)), "of the tool's work"),
+        *machine_tiles(run)])
+
+
+# ---- drawing in space
+
+def axes_of_view(view):
+    """(3, 3): the directions to the right, upwards and towards the eye, as rows, of a view in degrees."""
+    a, e = np.radians(view)
+    return np.array([[math.cos(a), 0, -math.sin(a)], [-math.sin(a) * math.sin(e), math.cos(e), -math.cos(a) * math.sin(e)],
+                     [math.sin(a) * math.cos(e), math.sin(e), math.cos(a) * math.cos(e)]])
+
+
+def sphere_polygons(positions, radii, colours, view):
+    """[(nearness, polygon, colour)] of spheres."""
+    turned = positions @ axes_of_view(view).T
+    angle = np.linspace(0, 2 * math.pi, CORNERS, endpoint=False)
+    rim = np.column_stack([np.cos(angle), np.sin(angle)])
+    polygons = turned[:, None, :2] + radii[:, None, None] * rim
+    return turned[:, 2], list(polygons), np.asarray(colours)[:, :3]
+
+
+def facet_polygons(vertices, facets, view, colour=STEEL):
+    """The same of triangles that face the eye, shaded by their slope."""
+    turned = vertices @ axes_of_view(view).T
+    corners = turned[facets]
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+    seen = normal[:, 2] > 0
+    light = 0.55 + 0.45 * np.clip(normal[seen] @ (0.3, 0.6, 0.74), 0, 1)
+    return corners[seen, :, 2].mean(axis=1), list(corners[seen, :, :2]), light[:, None] * np.array(to_rgb(colour))
+
+
+def paint(axes, *parts, edge=0.35, frame=None):
+    """Polygons, the farthest first and darker, in axes of mm; frame: (n, 2) m, what must be seen, all if None."""
+    depth = np.concatenate([part[0] for part in parts])
+    polygons = [polygon for part in parts for polygon in part[1]]
+    colours = np.vstack([part[2] for part in parts])
+    order = np.argsort(depth, kind="stable")
+    shade = 0.72 + 0.28 * (depth - depth.min()) / max(np.ptp(depth), 1e-12)
+    colours = (colours * shade[:, None])[order]
+    axes.add_collection(PolyCollection([MM * polygons[k] for k in order], facecolors=colours, edgecolors=0.6 * colours,
+                                       linewidths=edge))
+    points = MM * (np.concatenate([p[:: max(1, len(p) // 4)] for p in polygons]) if frame is None else frame)
+    low, high = points.min(axis=0), points.max(axis=0)
+    axes.set(xlim=(low[0] - 5, high[0] + 5), ylim=(low[1] - 5, high[1] + 5), aspect="equal")
+    axes.axis("off")
+
+
+def rock_colours(run, shot):
+    """(n, 3) of the rock's spheres."""
+    model, held = run.model, run.model["rock_supported"]
+    if loose(run):
+        moved = np.linalg.norm(shot["rock_positions"] - run.snapshot(settled(run))["rock_positions"], axis=1)
+        colours = colormaps["YlOrBr"](np.clip(moved / (4 * model["rock_radii"]), 0.08, 0.9))[:, :3]
+    else:
+        bonds, gone = model["bonds"], shot["status"] != 0
+        count = len(held)
+        every = np.bincount(bonds.ravel(), minlength=count)
+        broken = np.bincount(bonds[gone].ravel(), minlength=count) / np.maximum(every, 1)
+        colours = DAMAGE(broken)[:, :3]
+        chip = shapes.chips(count, bonds, ~gone, held)
+        colours[chip] = LOOSE(broken[chip])[:, :3]
+    colours[held] = to_rgb(SUPPORT)
+    return colours
+
+
+def settled(run):
+    """Number of the snapshot at which the fill has come to rest."""
+    return run.stage_ends()[0]
+
+
+def tooth_parts(run, shot, view, nearer=np.inf):
+    """Polygons of the tooth where it is, its particles or triangles no nearer to the eye than z = `nearer`."""
+    place = np.array([*shot["tool_offset"], 0.0])
+    if not has_particles(run):
+        return facet_polygons(shot["tool_vertices"] + place, run.model["tool_facets"], view)
+    shown = np.zeros(len(run.model["tool_radii"]), bool)
+    shown[shot["skin"]] = True
+    shown |= run.model["tool_mounted"] & shot["alive"]
+    if np.isfinite(nearer):
+        shown = shot["alive"] & (run.model["tool_positions"][:, 2] < nearer)
+        shown &= run.model["tool_positions"][:, 2] > nearer - 2.5 * run.model["tool_radii"]
+    colour = np.tile(to_rgb(STEEL), (shown.sum(), 1))
+    return sphere_polygons(run.model["tool_positions"][shown] + place, run.model["tool_radii"][shown], colour, view)
+
+
+def frame(run, view):
+    """(n, 2) m: corners of the block and the tooth at the first and the last instant, as seen."""
+    width, height, depth = run.model["block"]
+    corners = [np.array([x, y, z]) for x in (0, width) for y in (0, height) for z in (-depth / 2, depth / 2)]
+    tooth = run.model["tool_positions"] if has_particles(run) else run.model["tool_vertices"]
+    places = [tooth + (*run.snapshot(k)["tool_offset"], 0.0) for k in (0, -1)]
+    return np.vstack([*corners, *places]) @ axes_of_view(view).T[:, :2]
+
+
+def instants(run, most=4):
+    """Numbers of snapshots to show: the first of the cut, then evenly up to the last."""
+    last = int(run.stages[-1])
+    ends = run.stage_ends()
+    cut = max((s for s in ends if s < last), default=0)
+    cutting = [k for k in range(len(run.times)) if run.times[k] >= run.times[ends.get(cut - 1, 0)]]
+    return spread(cutting, most)
+
+
+def perspective(run):
+    """Rock and tooth from above and in front."""
+    figure, panels = canvas(11, 7.6, 2, 2)
+    for axes, k in zip(panels, instants(run)):
+        shot = run.snapshot(k)
+        paint(axes, sphere_polygons(shot["rock_positions"], run.model["rock_radii"], rock_colours(run, shot), ABOVE),
+              tooth_parts(run, shot, ABOVE), edge=0.2, frame=frame(run, ABOVE))
+        axes.set_title(f"t = {number(run.times[k])} s, tip at {number(MM * shot['tool_offset'][0])} mm")
+    return figure
+
+
+def side(run):
+    """The slab that the tooth runs through, cut open at its middle."""
+    figure, panels = canvas(11, 6.8, 2, 2)
+    radius = run.model["rock_radii"]
+    for axes, k in zip(panels, instants(run)):
+        shot = run.snapshot(k)
+        z = shot["rock_positions"][:, 2]
+        slab = (z < 0.5 * radius) & (z > -3 * radius)
+        paint(axes, sphere_polygons(shot["rock_positions"][slab], radius[slab], rock_colours(run, shot)[slab], SIDE),
+              tooth_parts(run, shot, SIDE, nearer=0.0), frame=frame(run, SIDE))
+        axes.set_title(f"t = {number(run.times[k])} s")
+    return figure
+
+
+# ---- curves
+
+def forces(run):
+    """Forces on the tooth, work and what became of it, cracks and worn volume."""
+    time = run.column("time")
+    if not len(time):
+        return None
+    names = [("cutting_force", "cutting", "black"), ("thrust_force", "thrust", "#3b7fb0"), ("side_force", "sideways", "#8a8a8a")]
+    figure, (upper, lower) = canvas(10, 5.6, 2, 1, sharex=True)
+    window = max(1, len(time) // 60)
+    for name, label, colour in names:
+        upper.plot(time, run.column(name) / 1e3, color=colour, linewidth=0.5, alpha=0.5)
+        upper.plot(time, running_mean(run.column(name), window) / 1e3, color=colour, linewidth=1.6, label=label)
+    upper.set_ylabel("force on the tooth / kN")
+    upper.legend(loc="upper left")
+    for name, label, colour in (("tool_work", "work of the tooth", "black"), ("tool_friction", "friction on it", "#c8a15a"),
+                                ("bond_breaking", "bonds broken", CRACK)):
+        if run.column(name).any():
+            lower.plot(time, run.column(name), color=colour, label=label)
+    lower.set(ylabel="J", xlabel="time / s")
+    lower.legend(loc="upper left")
+    if run.column("worn_volume").any():
+        other = lower.twinx()
+        other.plot(time, 1e6 * run.column("worn_volume"), color="#54093a", linestyle=":")
+        other.set_ylabel("worn volume / cm³ (dotted)")
+    name_stages(run, upper)
+    return figure
+
+
+def name_stages(run, axes):
+    """A line where each stage ends, and its name."""
+    time, stage = run.column("time"), run.column("stage")
+    for k, name in enumerate(run.model["stage_names"].tolist()):
+        rows = time[stage == k]
+        if len(rows):
+            axes.axvline(rows.max(), color="#c9b48a", linewidth=0.8)
+            axes.text(rows.mean(), 1.01, name, ha="center", va="bottom", transform=axes.get_xaxis_transform())
+
+
+# ---- wear
+
+def worn(run):
+    """True where the tooth wore."""
+    return has_particles(run) and bool(run.result("worn_volume") > 0)
+
+
+def wear_scale(run):
+    """Normalisation of the colour of worn depth, mm."""
+    depth = MM * run.snapshot(-1)["worn_depth"]
+    return Normalize(0, max(float(depth.max()), 1e-12))
+
+
+def worn_tooth(axes, run, shot, norm, view):
+    """The tooth's skin in the colour of its worn depth."""
+    skin = shot["skin"]
+    colours = WEAR(norm(MM * shot["worn_depth"][skin]))
+    part = sphere_polygons(run.model["tool_positions"][skin], run.model["tool_radii"][skin], colours, view)
+    paint(axes, part, edge=0.15)
+
+
+def wear(run):
+    """Profile of wear on the tooth at the end, from in front and from below."""
+    if not worn(run):
+        return None
+    shot, norm = run.snapshot(-1), wear_scale(run)
+    figure, panels = canvas(11, 4.6, 1, 3)
+    for axes, view, title in zip(panels, (SIDE, (50.0, 12.0), BELOW), ("from the side", "from in front", "from in front and below")):
+        worn_tooth(axes, run, shot, norm, view)
+        axes.set_title(title)
+    figure.colorbar(ScalarMappable(norm, WEAR), ax=panels, label="worn depth / mm", shrink=0.7)
+    return figure
+
+
+def wear_over_height(run):
+    """Largest and mean worn depth of the particles that were skin, over the height above the tip."""
+    if not worn(run):
+        return None
+    shot, places, radii = run.snapshot(-1), run.model["tool_positions"], run.model["tool_radii"]
+    skin, radius = shot["skin"], float(radii[0])
+    row = np.floor((places[skin, 1]) / (2 * radius)).astype(int)
+    depth = MM * shot["worn_depth"][skin]
+    rows = np.unique(row)
+    height = MM * 2 * radius * (rows + 0.5)
+    figure, (axes,) = canvas(7, 3.4)
+    axes.plot(height, [depth[row == k].max() for k in rows], color=CRACK, label="largest")
+    axes.plot(height, [depth[row == k].mean() for k in rows], color="black", label="mean")
+    if run.parameter("removal", "") == "none":
+        axes.axhline(MM * M_DEPTH, color="#3b7fb0", linestyle="--", linewidth=1, label="largest of M 13.3")
+    axes.set(xlabel="height above the tip / mm", ylabel="worn depth / mm", yscale="log", ylim=(1e-3, None))
+    axes.legend()
+    return figure
+
+
+def stages_of_wear(run):
+    """What is left of the tooth at stages of the cut, coloured by its wear, and what is gone."""
+    if not worn(run) or run.snapshot(-1)["alive"].all():
+        return None
+    numbers = spread(range(len(run.times)), 4)
+    radii, places = run.model["tool_radii"], run.model["tool_positions"]
+    norm = Normalize(0, MM * 2 * float(radii[0]))
+    figure, panels = canvas(11, 7.2, 2, 4)
+    for axes, below, k in zip(panels[:4], panels[4:], numbers):
+        shot = run.snapshot(k)
+        worn_tooth(axes, run, shot, norm, (50.0, 12.0))
+        axes.set_title(f"t = {number(run.times[k])} s")
+        gone, skin = ~shot["alive"], shot["skin"]
+        parts = [sphere_polygons(places[skin], radii[skin], np.tile(to_rgb(PALE), (len(skin), 1)), (50.0, 12.0))]
+        if gone.any():
+            # Drawn nearer than they were, so that none is hidden by the tooth.
+            nearness, polygons, colours = sphere_polygons(places[gone], radii[gone], np.tile(to_rgb(CRACK), (gone.sum(), 1)),
+                                                          (50.0, 12.0))
+            parts.append((nearness + 1.0 * np.ptp(places[:, 0]), polygons, colours))
+        paint(below, *parts, edge=0.15)
+        below.set_title(f"{int(gone.sum())} removed")
+    figure.colorbar(ScalarMappable(norm, WEAR), ax=panels, label="worn depth of what is left / mm", shrink=0.5)
+    return figure

@@ -1,0 +1,140 @@
+"""Cuts in space, in miniature (M 13): books close, wear is Archard's, a loose fill weighs what it weighs, runs resume."""
+import json
+import signal
+
+import numpy as np
+import pytest
+
+from .conftest import ROOT, arguments, finish, history, interrupt_script, run_script, start
+
+BONDED = dict(width=0.28, height=0.1, depth=0.16, coarsening=1, radius=0.012, tool_radius=3e-3, breadth=0.04, tooth_height=0.06,
+              tooth_width=0.04, depth_of_cut=0.026, lowering_velocity=0.5, velocity=0.5, cut_time=0.09, snapshot_period=0.03)
+"""A cut as of M 13.3 through 340 spheres."""
+LOOSE = dict(width=0.3, height=0.08, depth=0.17, coarsening=1, radius=0.012, breadth=0.04, tooth_height=0.08, tooth_width=0.04,
+             depth_of_cut=0.026, freeboard=0.03, settling=0.5, lowering_velocity=0.3, cut_time=0.1, start=0.16, facet=0.03)
+"""A fill as of M 13.1."""
+
+
+def scene(name, out, *flags, **values):
+    """Run one of the scripts."""
+    return run_script(ROOT / f"yade_scripts/{name}.py", *arguments(values), "--out", str(out), *flags, out=out)
+
+
+def value(run, name):
+    return run.summary["results"][name]["value"]
+
+
+def last_snapshot(out):
+    with np.load(sorted((out / "snapshots").glob("*.npz"))[-1]) as arrays:
+        return dict(arrays)
+
+
+def books_close(run, part):
+    energy = run.summary["audits"]["energy"]
+    assert energy["tool_work"] > 1 and abs(energy["residual"]) < part * energy["tool_work"]
+    friction = run.summary["audits"]["friction"]
+    assert friction["tool_shared"] + friction["tool_waiting"] == pytest.approx(friction["tool"], rel=1e-9)
+
+
+@pytest.fixture(scope="module")
+def worn(tmp_path_factory):
+    """Model II in miniature."""
+    run = scene("cutting_3d_wear", tmp_path_factory.mktemp("worn") / "run", "--vtk", **BONDED)
+    assert run.code == 0, run.stderr
+    return run
+
+
+def test_a_tooth_of_particles_breaks_bonds_and_books_its_work(worn):
+    assert value(worn, "tensile_cracks") > 10 and value(worn, "mean_cutting_force") > 0
+    books_close(worn, 0.06)
+
+
+def test_worn_volume_is_archards_and_none_goes(worn):
+    friction = worn.summary["audits"]["friction"]["worn_by"]
+    assert value(worn, "worn_volume") == pytest.approx(5e-9 * friction, rel=1e-9)
+    assert value(worn, "particles_removed") == 0 and value(worn, "mass_lost") == 0
+    shot = last_snapshot(worn.out)
+    assert shot["worn_depth"].max() == pytest.approx(value(worn, "maximum_wear_depth"), rel=1e-12)
+    # Depth is volume over the square of a sphere.
+    radii = np.load(worn.out / "model.npz")["tool_radii"]
+    assert (shot["worn_depth"] * (2 * radii)**2).sum() == pytest.approx(value(worn, "worn_volume"), rel=1e-9)
+
+
+def test_no_wear_without_contact_and_none_above_the_cut(worn):
+    places = np.load(worn.out / "model.npz")["tool_positions"]
+    rubbed = last_snapshot(worn.out)["worn_depth"] > 0
+    assert 5 < rubbed.sum() and np.median(places[rubbed, 1]) < BONDED["depth_of_cut"]
+
+
+def test_no_heat_engine_and_files_for_paraview(worn):
+    assert "heat" not in worn.summary["wall_time"]["by_engine"]
+    assert len(list((worn.out / "vtk").glob("tool.*.vtk"))) > 2
+    page = (worn.out / "report.html").read_text()
+    assert "in perspective" in page and "M 13.3: 0.14 mm" in page
+
+
+@pytest.mark.parametrize("rule", ["volume", "depth"])
+def test_particles_go_as_they_wear(tmp_path, rule):
+    run = scene("cutting_3d_removal", tmp_path / "run", removal=rule, wear_coefficient=3e-8, report="false",
+                **{**BONDED, "cut_time": 0.05})
+    assert run.code == 0, run.stderr
+    assert value(run, "particles_removed") > 10
+    mass = run.summary["audits"]["mass"]
+    assert mass["archard"] == pytest.approx(7830 * 3e-8 / 0.1 * run.summary["audits"]["friction"]["worn_by"], rel=1e-9)
+    if rule == "volume":
+        assert abs(mass["unexplained"]) < 1e-9 * mass["archard"]
+    shot, radii = last_snapshot(run.out), np.load(run.out / "model.npz")["tool_radii"]
+    assert (shot["worn_depth"][shot["alive"]] < 2 * radii[shot["alive"]]).all()
+    assert set(shot["skin"].tolist()) <= set(np.flatnonzero(shot["alive"]).tolist())
+    books_close(run, 0.06)
+
+
+def test_a_tooth_of_triangles_makes_a_like_cut(tmp_path, worn):
+    values = {name: v for name, v in BONDED.items() if name != "tool_radius"}
+    run = scene("cutting_3d_triangles", tmp_path / "run", facet=0.02, report="false", **values)
+    assert run.code == 0, run.stderr
+    books_close(run, 0.06)
+    assert value(run, "tensile_cracks") > 10 and value(run, "worn_volume") == 0
+    assert 0.3 < value(run, "mean_cutting_force") / value(worn, "mean_cutting_force") < 3
+
+
+def test_a_loose_fill_settles_to_its_weight_and_resists_the_tooth(tmp_path):
+    run = scene("granular_3d", tmp_path / "run", report="false", **LOOSE)
+    assert run.code == 0, run.stderr
+    model, shot = np.load(tmp_path / "run/model.npz"), last_snapshot(tmp_path / "run")
+    free = ~model["rock_supported"]
+    assert (shot["rock_positions"][free, 1] > 0).all()
+    energy = run.summary["audits"]["energy"]
+    assert abs(energy["residual"]) < 0.02 * (energy["tool_work"] - energy["potential"])
+    columns = history(tmp_path / "run")
+    deep = columns["stage [-]"] == 1
+    assert columns["thrust_force [N]"][deep].max() > 1 and not columns["cutting_force [N]"][columns["stage [-]"] == 0].any()
+    assert value(run, "tensile_cracks") == 0
+
+
+def test_the_box_carries_the_weight_of_the_fill(tmp_path):
+    run = run_script(ROOT / "tests/scenes/scripts/settled_fill.py", *arguments({**LOOSE, "settling": 0.6}))
+    assert run.code == 0, run.stderr
+    found = json.loads(next(line for line in run.stdout.splitlines() if line.startswith("JSON"))[4:])
+    assert found["on_box"] == pytest.approx(found["weight"], rel=5e-3)
+    assert found["kinetic"] < 1e-3 * found["fallen"]
+
+
+def test_an_interrupted_cut_goes_on_bit_for_bit(tmp_path):
+    values = {**BONDED, "wear_coefficient": 1e-8, "cut_time": 0.06, "report": "false", "checkpoint_interval": 0.01}
+    script = ROOT / "yade_scripts/cutting_3d_removal.py"
+    whole = scene("cutting_3d_removal", tmp_path / "whole", **values)
+    assert whole.code == 0, whole.stderr
+    assert interrupt_script(script, tmp_path / "cut", signal.SIGTERM, 2, **values).code == 128 + signal.SIGTERM
+    resumed = finish(start(script, [*arguments(values), "--out", str(tmp_path / "cut"), "--resume"]), tmp_path / "cut")
+    assert resumed.code == 0, resumed.stderr
+    assert (tmp_path / "cut/history.csv").read_text() == (tmp_path / "whole/history.csv").read_text()
+    assert (tmp_path / "cut/cracks.csv").read_text() == (tmp_path / "whole/cracks.csv").read_text()
+
+
+@pytest.mark.parametrize("name, values, word", [
+    ("cutting_3d_wear", dict(cut_time=5), "cut_time"), ("cutting_3d_wear", dict(tool_radius=0.02), "tool_radius"),
+    ("granular_3d", dict(start=0.1), "start"), ("granular_3d", dict(Rn=1), "Rn")])
+def test_what_cannot_be_is_refused(tmp_path, name, values, word):
+    run = scene(name, tmp_path / "run", **{**(LOOSE if name == "granular_3d" else BONDED), **values})
+    assert run.code == 2 and run.stderr.splitlines()[-1].startswith(f"error: {word}")

@@ -1,0 +1,20 @@
+"""M 13.4: model III of cutting bonded rock in space; the tooth changes its shape as worn particles go.
+
+    yade -n -x yade_scripts/cutting_3d_removal.py [--full] [--name value ...] [--out DIR] [--resume]
+
+As model II (cutting_3d_wear.py), with M's removal: a particle goes once its worn depth exceeds its diameter. That rule
+passes nothing on to what it uncovers; --removal volume does, so that no wear is lost. The wear constant is to test the
+algorithm in a short run and is no steel's: k / mu = 5e-8 here. With our tooth and depth of cut model II wears a hundred
+times as deep as M's, so that M's own 5e-6 (--wear_coefficient 5e-7) takes the tip away before the first bond breaks.
+"""
+import os
+import sys
+
+sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(sys.argv[0]))))
+
+from rockwear import run  # noqa: E402
+from rockwear.cutting3d import OF_PARTICLES, ParticleCutting3D, parameters  # noqa: E402
+
+run.main("cutting_3d_removal", parameters(
+    *OF_PARTICLES, velocity=0.4, lowering_velocity=0.4, wear_coefficient=0.1 * 5e-8, removal="depth", wear_period=2,
+    snapshot_period=0.02, record_period=1e-3), ParticleCutting3D)

@@ -1,0 +1,19 @@
+"""M 13.3: model II of cutting bonded rock in space, with a tooth of particles; where it wears, and how deep.
+
+    yade -n -x yade_scripts/cutting_3d_wear.py [--full] [--name value ...] [--out DIR] [--resume]
+
+Numbers are M's: rock as in cutting_3d_triangles.py, tool particles of 1.5 mm, 0.4 m/s over 1 s, wear constant
+k / mu = 5e-9 and hardness 1 Pa, none removed. M's tooth is of 28,570 particles where it cuts and of triangles elsewhere;
+here all of it is of particles (28,576 with --full), since only its skin takes part in contact.
+"""
+import os
+import sys
+
+sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(sys.argv[0]))))
+
+from rockwear import run  # noqa: E402
+from rockwear.cutting3d import OF_PARTICLES, ParticleCutting3D, parameters  # noqa: E402
+
+run.main("cutting_3d_wear", parameters(
+    *OF_PARTICLES, velocity=0.4, lowering_velocity=0.4, wear_coefficient=0.1 * 5e-9, snapshot_period=0.02,
+    record_period=1e-3), ParticleCutting3D)

@@ -1,0 +1,19 @@
+"""M 13.1: a tooth of triangles through loose spheres that have settled under gravity.
+
+    yade -n -x yade_scripts/granular_3d.py [--full] [--name value ...] [--out DIR] [--resume]
+
+Numbers are M's: kn = 1e6 N/m, mu = 0.1 between particles and against the tooth, 0.04 m/s, no cohesion, no wear. M shows
+box, tooth and depth of cut in a figure only, and gives no density: they are ours. M's 11,700 spheres of 9 mm come with
+--full; the defaults coarsen them 1.5 times. The box's bottom and sides are spheres that are held.
+"""
+import os
+import sys
+
+sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(sys.argv[0]))))
+
+from rockwear import run  # noqa: E402
+from rockwear.cutting3d import LOOSE, OF_BONDS, OF_TRIANGLES, LooseCutting3D, parameters  # noqa: E402
+
+run.main("granular_3d", parameters(
+    *OF_TRIANGLES, *LOOSE, without=OF_BONDS, mu=0.1, start=0.2, background_damping=5.0),
+    LooseCutting3D)
