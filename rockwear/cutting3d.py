@@ -4,7 +4,7 @@ from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
-from yade import NewtonIntegrator, O, Vector3
+from yade import NewtonIntegrator, Vector3
 
 from . import cutting, engines, scene, vtk
 from .cutting import Cutting
@@ -22,7 +22,7 @@ from .kernels.outline import read_outline, tooth
 from .kernels.rigid_motion import Straight
 from .kernels.stability import critical_time_step
 from .kernels.wear_laws import wear_law
-from .parameters import Parameter, above_zero, flag, integer, number
+from .parameters import Parameter, above_zero, flag, number
 from .rock import Block
 from .tool import LayeredTool
 
@@ -34,8 +34,8 @@ TOUCHING = 4
 """Tool particles that are taken to press one rock particle at once, in the time step."""
 
 SHARED = """porosity seed kn kt Rn Rt law H mu tool_kn tool_kt tool_mu contact_damping tool_density outline rake clearance
-    tip_radius tooth_height tooth_width velocity depth_of_cut approach background_damping hardness wear_coefficient wear_law
-    wear_exponent wear_modes acceleration removal time_step_fraction time_step sampling_period rock_sampling_period
+    tip_radius tooth_height tooth_width velocity depth_of_cut approach background_damping hardness wear_coefficient
+    wear_law wear_exponent wear_modes acceleration removal time_step_fraction time_step sampling_period rock_sampling_period
     wear_period damping_period record_period rock_density width height""".split()
 """Parameters that are those of the cut in the plane."""
 
@@ -52,7 +52,7 @@ PARAMETERS = [p for p in cutting.parameters(**OURS) if p.name in SHARED] + [
     Parameter("bonding_gap", 1e-4, "m", number(0), "largest gap that is bonded", "ours"),
     Parameter("breadth", 0.057, "m", above_zero, "breadth of the tooth, across the cut", "ours"),
     Parameter("gravity", GRAVITY, "m/s2", number(0), "downwards", "M 13.1"),
-    Parameter("start", 0.0, "m", number(0), "place of the tip over the specimen when it is lowered, from the left end", "ours"),
+    Parameter("start", 0.0, "m", number(0), "place of the tip when it is lowered, from the left end", "ours"),
     Parameter("lowering_velocity", 0.04, "m/s", above_zero, "of the tooth on its way down", "ours: M gives none"),
     Parameter("cut_time", 1.0, "s", above_zero, "time of the horizontal cut", "M 13.3"),
     Parameter("coarsening", 1.5, "", number(1, 8), "factor on the radii of rock and tool; stiffnesses grow with it and "
@@ -60,9 +60,11 @@ PARAMETERS = [p for p in cutting.parameters(**OURS) if p.name in SHARED] + [
     Parameter("full", False, "", flag, "the source's sizes: coarsening counts as 1"),
     Parameter("snapshot_period", 0.05, "s", above_zero, "simulated time between the pictures of the report"),
 ]
-OF_PARTICLES = [Parameter("tool_radius", 1.5e-3, "m", above_zero, "radius of the tool's spheres, before coarsening", "M 13.3")]
+OF_PARTICLES = [Parameter("tool_radius", 1.5e-3, "m", above_zero, "radius of the tool's spheres, before coarsening",
+                          "M 13.3")]
 OF_TRIANGLES = [Parameter("facet", 0.02, "m", above_zero, "size of the tool's triangles", "ours"),
-                Parameter("work_fraction", 1.0, "", number(0, 1), "part of the friction work that wears the tool", "M 6.9"),
+                Parameter("work_fraction", 1.0, "", number(0, 1), "part of the friction work that wears the tool",
+                          "M 6.9"),
                 Parameter("reshape", False, "", flag, "move the vertices with the wear")]
 LOOSE = [Parameter("settling", 0.4, "s", above_zero, "time for the fill to settle under gravity", "ours"),
          Parameter("settling_damping", 50.0, "1/s", number(0), "background damping while it settles", "ours"),

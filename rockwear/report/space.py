@@ -10,7 +10,7 @@ from matplotlib.colors import LinearSegmentedColormap, Normalize, to_rgb
 from . import shapes
 from .cutting import CRACK, DAMAGE, LOOSE, PALE, STEEL, SUPPORT
 from .page import Section, machine_tiles, number, percent, quantity, tiles
-from .plots import MM, MS, books, canvas, running_mean, save, spread
+from .plots import MM, books, canvas, running_mean, save, spread
 
 CORNERS = 14
 """Of the polygon that stands for a sphere."""
@@ -221,7 +221,8 @@ def forces(run):
     time = run.column("time")
     if not len(time):
         return None
-    names = [("cutting_force", "cutting", "black"), ("thrust_force", "thrust", "#3b7fb0"), ("side_force", "sideways", "#8a8a8a")]
+    names = [("cutting_force", "cutting", "black"), ("thrust_force", "thrust", "#3b7fb0"),
+             ("side_force", "sideways", "#8a8a8a")]
     figure, (upper, lower) = canvas(10, 5.6, 2, 1, sharex=True)
     window = max(1, len(time) // 60)
     for name, label, colour in names:
