@@ -48,7 +48,7 @@ def start(folder, values):
     """YADE in its own process; the whole bench ends where one run does not end well."""
     words = [word for name, value in values.items() for word in (f"--{name}", str(value))]
     done = subprocess.run(["yade", "-n", "-x", "-j1", str(ROOT / "yade_scripts/test_tooth.py"), "--out", str(folder),
-                           "--report", "false", *words], capture_output=True, text=True, stdin=subprocess.DEVNULL)
+                           "--report", "false", *words], capture_output=True, encoding="utf-8", stdin=subprocess.DEVNULL)
     if done.returncode:
         sys.exit(f"bench: {folder.name} ended with {done.returncode}: {done.stderr.splitlines()[-1]}")
 

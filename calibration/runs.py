@@ -43,7 +43,7 @@ class Runs:
         if self.keep and (folder / "checkpoint").exists() and not (folder / "summary.json").exists():
             words.append("--resume")
         done = subprocess.run(["yade", "-n", "-x", "-j1", str(ROOT / script), "--out", str(folder), *words],
-                              capture_output=True, text=True, stdin=subprocess.DEVNULL)
+                              capture_output=True, encoding="utf-8", stdin=subprocess.DEVNULL)
         if done.returncode:
             said = done.stderr.strip().splitlines() or ["nothing said"]
             raise RunFailed(f"{folder.name} ended with {done.returncode}: {said[-1]}")

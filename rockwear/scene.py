@@ -299,6 +299,13 @@ class FacetBodies(ToolBodies):
             vx, vy = vx - self.spin * y, vy + self.spin * x
         return vx, vy, 0.0
 
+    def outward(self, index):
+        """(3,) normal of facet `index` in the tool's frame, of any length, as YADE has the facet."""
+        first, second, third = self.local[index]
+        normal = np.cross(second - first, third - first)
+        # corners() puts a segment's base across the plane so that its triangle looks inwards.
+        return -normal if self.tool.boundary.dimension == 2 else normal
+
     def overlap(self, interaction):
         """Overlap (m) of a facet and a sphere as they lie."""
         facet, sphere = O.bodies[interaction.id1], O.bodies[interaction.id2]

@@ -158,9 +158,9 @@ def test_from_the_command_line_without_yade(tmp_path):
     folder = make_run(tmp_path / "run", snapshots=1)
     code = ("import runpy, sys; sys.modules['yade'] = None; sys.argv[1:] = [{!r}]; "
             "runpy.run_module('rockwear.report', run_name='__main__')")
-    done = subprocess.run([sys.executable, "-c", code.format(str(folder))], cwd=ROOT, capture_output=True, text=True)
+    done = subprocess.run([sys.executable, "-c", code.format(str(folder))], cwd=ROOT, capture_output=True, encoding="utf-8")
     assert done.returncode == 0 and done.stdout.strip().endswith("report.html"), done.stderr
-    done = subprocess.run([sys.executable, "-m", "rockwear.report", tmp_path], cwd=ROOT, capture_output=True, text=True)
+    done = subprocess.run([sys.executable, "-m", "rockwear.report", tmp_path], cwd=ROOT, capture_output=True, encoding="utf-8")
     assert done.returncode == 1 and done.stderr.count("\n") == 1 and "summary.json" in done.stderr
 
 

@@ -3,9 +3,10 @@
     yade -n -x yade_scripts/cutting_segments.py [--name value ...] [--out DIR] [--resume]
 
 As in M: kn = kt = 20e9 N/m and mu = 0.839 between tool and rock too, wear constant k / mu = 1 and hardness 1 Pa, so that
-the worn depth is no real one but shows where wear falls; the shape stays (--reshape true with a real
---wear_coefficient and --hardness moves the vertices). M cuts 40 mm at 0.04 m/s, some 5 million steps; the default goes
-ten times as fast over 8 mm, and --velocity 0.04 --start_up 1 is M's.
+the worn volume is no real one (it is the friction work) but shows where wear falls; the shape stays. To move the
+vertices: --reshape true --wear_coefficient 0.01128 --hardness 0 --acceleration 70; a warning says when the acceleration
+is too high for a tool that recedes. M cuts 40 mm at 0.04 m/s, some 9 million steps; the default goes the same way
+fifty times as fast (shorter ones meet a single chip), and --velocity 0.04 --start_up 1 is M's.
 """
 import os
 import sys
@@ -16,5 +17,5 @@ from rockwear import run  # noqa: E402
 from rockwear.facet_cutting import FacetCutting, parameters  # noqa: E402
 
 run.main("cutting_segments", parameters(
-    tool_kn=20e9, tool_kt=20e9, tool_mu=0.839, velocity=0.4, start_up=0.02, cycles=0, hardness=1.0, wear_coefficient=0.839,
+    tool_kn=20e9, tool_kt=20e9, tool_mu=0.839, velocity=2.0, start_up=0.02, cycles=0, hardness=1.0, wear_coefficient=0.839,
     acceleration=1.0, reshape=False), FacetCutting)

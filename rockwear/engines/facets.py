@@ -4,9 +4,9 @@ import math
 import numpy as np
 from yade import Law2_ScGeom_FrictViscoPhys_CundallStrackVisco, O, Vector3
 
-from ..kernels.boundary import area_vectors
-from ..kernels.wear_laws import WORK
-from ..kernels.worn_boundary import WornAway
+from ..kernels.boundary import altitudes, area_vectors
+from ..kernels.wear_laws import FRICTION, WORK
+from ..kernels.worn_boundary import STEPS, STRIDE, Folded, WornAway
 from . import Engine, contact_energy, law_functor
 from .bonds import RockFriction
 from .record import RunEnded
@@ -18,6 +18,8 @@ SILENT = 1e-9
 """N/m, stiffness below which a contact is one of these. So YADE's own scene says which are muted, saved ones too."""
 FACE = 1 - 1e-13
 """Cosine between a contact's and its facet's normal above which the facet is touched inside, not at its rim."""
+SLIP = (FRICTION, 0.0)
+"""The sum that is the way slid."""
 EVEN = 1e-9
 """Two contacts are equally deep if their depths differ by less than this part of the particle's radius."""
 
@@ -34,8 +36,8 @@ class FacetContact(ToolContact):
     what the law cut off the trial force, over the stiffness, times the force that is left. To be visited in every step.
     """
 
-    def __init__(self, *, neighbours, **common):
-        super().__init__(**common)
+    def __init__(self, *, neighbours, needs=(WORK,), **common):
+        super().__init__(needs=(*needs, SLIP), **common)
         self.neighbours = neighbours
         self.springs = {}
         self.dissipated = 0.0
@@ -130,6 +132,20 @@ class FacetContact(ToolContact):
         body = O.bodies[self.tool.body_of[contact[1]]]
         return abs(contact[0].geom.normal.dot(body.state.ori * body.shape.normal)) > FACE
 
+    def from_behind(self):
+        """Where (x, y, z in m) a particle that counts touches a facet inside its rim from within the tool, or None.
+
+        YADE's facets have two sides. The normal of a contact runs from its first body to the second.
+        """
+        for contact in self.possible:
+            interaction, index, _, tool_first = contact
+            if interaction.isReal and not muted(contact) and self._inside(contact):
+                body = O.bodies[self.tool.body_of[index]]
+                outward = body.state.ori * Vector3(*self.tool.outward(index))
+                if (interaction.geom.normal.dot(outward) > 0) != tool_first:
+                    return "({:.4g}, {:.4g}, {:.4g}) m".format(*interaction.geom.contactPoint)
+        return None
+
     def _wake(self, contact):
         if muted(contact):
             phys = contact[0].phys
@@ -216,20 +232,27 @@ class FacetWear(Engine):
     contact: the FacetContact that says where the tool slides; boundary: kernels.worn_boundary.WornBoundary; tool: its
     bodies; law: of kernels.wear_laws, accelerated; hardness: Pa; work_fraction: the part of the friction work that
     counts as the tool's (R 2-53 takes one half, Archard's law all of it); reshape: False leaves the shape as it is, and
-    only `worn`, the volume (m,) m3 worn off each facet, grows.
+    only `worn`, the volume (m,) m3 worn off each facet, grows; acceleration: the law's, for what is said of it.
+
+    `recession` is the mean over the worn volume of what a facet recedes over the way slid on it, dw/ds of Archard's law.
+    Where it is not small, a face recedes from what presses on it: the contact is relieved, and wear is no longer
+    proportional to the acceleration, R's first rule. Raises RunEnded where a facet would recede further in one update
+    than vertices can go, where the boundary would fold, and where a particle has come to the inner side of a facet.
     """
 
     name = "wear"
 
-    def __init__(self, *, contact, boundary, tool, law, hardness, work_fraction=1.0, reshape=True):
+    def __init__(self, *, contact, boundary, tool, law, hardness, work_fraction=1.0, reshape=True, acceleration=1.0):
         super().__init__()
         self.contact, self.boundary, self.tool, self.law, self.hardness = contact, boundary, tool, law, hardness
-        self.work_fraction, self.reshape = work_fraction, reshape
+        self.work_fraction, self.reshape, self.acceleration = work_fraction, reshape, acceleration
         self.worn = np.zeros(len(boundary.facets))
-        self.contact_energy_removed = self.work_used = 0.0
+        self.contact_energy_removed = self.work_used = self.receded = 0.0
 
     def act(self):
         slid = self.contact.take_slid()
+        if self.reshape:
+            self._check_sides()
         if not slid[WORK].any():
             return
         self.work_used += float(slid[WORK].sum())
@@ -238,14 +261,39 @@ class FacetWear(Engine):
         self.worn += volume
         if not self.reshape:
             return
+        rubbed = slid[SLIP] > 0
+        self.receded += float(np.sum(volume[rubbed]**2 / (areas * slid[SLIP])[rubbed]))
+        self._check_speed(volume / areas)
         stored = self.contact.elastic_energy()
         try:
             moved = self.boundary.wear(volume)
         except WornAway as end:
             raise RunEnded(f"the tool is worn away at t = {O.time:g} s: {end}", True) from None
+        except Folded as end:
+            raise self._too_fast(f"{end}: it is worn through in a thin place, or wears too fast") from None
         if moved:
             self.tool.reshape()
             self.contact_energy_removed += stored - self.contact.elastic_energy()
+
+    def _check_speed(self, depth):
+        size = altitudes(self.boundary.vertices, self.boundary.facets)
+        worst = int(np.argmax(depth / size))
+        if depth[worst] > STEPS * STRIDE * size[worst]:
+            raise self._too_fast(f"a facet of {1e3 * size[worst]:.3g} mm would recede by {1e3 * depth[worst]:.3g} mm at once")
+
+    def _check_sides(self):
+        place = self.contact.from_behind()
+        if place is not None:
+            raise self._too_fast(f"a rock particle has come to lie inside of it at {place}")
+
+    def _too_fast(self, words):
+        return RunEnded(f"the tool's shape cannot follow its wear at t = {O.time:g} s: {words}; lower acceleration = "
+                        f"{self.acceleration:g}", False)
+
+    @property
+    def recession(self):
+        """-, mean of dw/ds; nan without wear."""
+        return self.receded / self.volume if self.volume > 0 else math.nan
 
     @property
     def volume(self):
@@ -254,10 +302,11 @@ class FacetWear(Engine):
 
     def state(self):
         return {"contact_energy_removed": self.contact_energy_removed, "work_used": self.work_used,
-                "worn": self.worn.copy(), "boundary": self.boundary.state()}
+                "receded": self.receded, "worn": self.worn.copy(), "boundary": self.boundary.state()}
 
     def restore(self, state):
-        self.contact_energy_removed, self.work_used = float(state["contact_energy_removed"]), float(state["work_used"])
+        for name in ("contact_energy_removed", "work_used", "receded"):
+            setattr(self, name, float(state[name]))
         self.worn = state["worn"].copy()
         self.boundary.restore(state["boundary"])
 

@@ -45,6 +45,10 @@ class WornAway(Exception):
     """Nothing is left that could be worn: str() is one line."""
 
 
+class Folded(Exception):
+    """Much is left, but the vertices can move no further without a fold: str() is one line."""
+
+
 class WornBoundary:
     """A closed boundary whose facets are worn; its topology stays, its vertices move inwards.
 
@@ -109,7 +113,8 @@ class WornBoundary:
     def wear(self, demanded):
         """Take the volumes `demanded` (m,) m3 off the facets. -> True if vertices have moved.
 
-        Raises WornAway once less than the part `gone` would be left, or no motion takes more without folding.
+        Raises WornAway once less than the part `gone` would be left, or no motion takes more without folding and less
+        than half is left; Folded if more is left.
         """
         demanded = np.asarray(demanded, float)
         self.archard_volume += float(demanded.sum())
@@ -133,7 +138,9 @@ class WornBoundary:
             else:
                 stuck += 1
                 if stuck > 10:
-                    raise WornAway(f"worn through, with {100 * self.volume / self.first_volume:.3g} % of the volume left")
+                    part = self.volume / self.first_volume
+                    raise (WornAway if part < 0.5 else Folded)(
+                        f"its surface can recede no further without a fold, with {100 * part:.3g} % of the volume left")
                 self._spread()
             if self.pending.sum() <= 0:
                 return True

@@ -24,9 +24,9 @@ def sections(run):
         Section("Failure", "Red: broken bonds, drawn across the bond where its discs are still near each other. Blue: "
                 "chips, which no chain of bonds joins to the support. The darker a disc, the more of its bonds are gone.",
                 [drawn(cut), moving_picture(run)]),
-        Section("Wear along the tool", "Volume worn off each segment over its first length, along the new outline: zero at "
-                "the lowest point, positive up the front. Right: the same as a band on the tool, its width to scale with "
-                "the wear but not with the tool.", [drawn(wear)]),
+        Section("Wear along the tool", "Share of all wear that fell on each segment, per millimetre of the new outline: "
+                "zero at the lowest point, positive up the front; a tall single segment is one contact that slid under "
+                "load. Right: the same as a band on the tool.", [drawn(wear)]),
         *([Section("Shape of the tool", "Dashed: the new tool. Each point is a vertex.", [drawn(shape)])]
           if run.parameter("reshape", False) else []),
         Section("History", "Thin lines are the record, thick ones a running mean.", [drawn(history)]),
@@ -42,8 +42,11 @@ def key_results(run):
     return tiles([
         tile("mean cutting force", "mean_cutting_force", "N/m"), tile("peak cutting force", "peak_cutting_force", "N/m"),
         tile("mean thrust force", "mean_thrust_force", "N/m"), tile("specific energy", "specific_energy", "J/m3"),
-        tile("worn volume", "worn_volume", "m3/m", "by the wear law"), tile("deepest wear", "deepest_wear", "m"),
-        ("mass lost", percent(run.result("mass_lost"), 1.0), ""),
+        *([tile("worn volume", "worn_volume", "m3/m", "by the wear law"), tile("deepest wear", "deepest_wear", "m"),
+           ("mass lost", percent(run.result("mass_lost"), 1.0), ""),
+           ("recession over slip", quantity(run.result("recession_per_slip"), "-"), "wear is relieved where it is not small")]
+          if run.parameter("reshape", False) else
+          [tile("worn volume", "worn_volume", "m3/m", "by the wear law; the shape is kept")]),
         ("cracks", f"{run.result('tensile_cracks')} + {run.result('shear_cracks')}", "tensile + shear, at the end"),
         ("energy residual", percent(energy.get("residual", np.nan), energy.get("tool_work", 0.0)), "of the tool's work"),
         *machine_tiles(run)])
@@ -62,7 +65,7 @@ def along(run):
 
 
 def wear(run):
-    """Worn depth along the outline at the end of each stage, and on the tool."""
+    """Share of the wear along the outline at the end of each stage, and on the tool."""
     middle, length, normal, arc = along(run)
     free = ~run.model["tool_protected"][run.model["tool_facets"]].all(axis=1)
     order = np.argsort(arc)
@@ -70,12 +73,13 @@ def wear(run):
     ends = spread(run.stage_ends().items(), 8)
     figure, (profile, axes) = canvas(12, 5.4, 1, 2)
     for (_, k), colour in zip(ends, colormaps["plasma"](np.linspace(0, 0.85, len(ends)))):
-        depth = run.snapshot(k)["worn_volume"] / length
-        profile.step(MM * arc[order], MM * depth[order], where="mid", color=colour, linewidth=1.4,
+        worn_volume = run.snapshot(k)["worn_volume"]
+        depth = 100 * worn_volume / max(worn_volume.sum(), 1e-300) / (MM * length)
+        profile.step(MM * arc[order], depth[order], where="mid", color=colour, linewidth=1.4,
                      label=f"after {stage_name(stage_of(run, k))}")
     worn = MM * arc[order][depth[order] > 0.01 * depth.max()]
     left, right = (worn.min(), worn.max()) if len(worn) else (-5, 5)
-    profile.set(xlim=(left - 3, right + 3), xlabel="arc length from the tip / mm", ylabel="worn depth / mm")
+    profile.set(xlim=(left - 3, right + 3), xlabel="arc length from the tip / mm", ylabel="share of all wear / % per mm")
     profile.axvline(0, color="#999999", linewidth=0.8, linestyle=":")
     profile.legend(loc="upper left")
     model = run.model["tool_vertices"][shapes.loop(run.model["tool_facets"])]

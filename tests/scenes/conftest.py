@@ -30,7 +30,7 @@ def arguments(values):
 def start(script, words=(), threads=1, **options):
     """Start a YADE script, its output captured."""
     return subprocess.Popen(["yade", "-n", "-x", f"-j{threads}", str(script), *words], stdout=subprocess.PIPE,
-                            stderr=subprocess.PIPE, stdin=subprocess.DEVNULL, text=True, **options)
+                            stderr=subprocess.PIPE, stdin=subprocess.DEVNULL, encoding="utf-8", **options)
 
 
 def finish(process, out=None):

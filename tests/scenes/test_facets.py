@@ -1,6 +1,7 @@
 """A tool of facets in YADE: one contact at a time, exact friction and wear, the new shape felt, and runs that resume."""
 import json
 import signal
+from functools import lru_cache
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ SHORT = {**SMALL, "velocity": 4.0, "start_up": 8e-4, "cycles": 1, "cycle_time": 
          "wear_coefficient": 0.01128, "acceleration": 3e4}
 
 
+@lru_cache
 def pressed(*words):
     run = run_script(ROOT / "tests/scenes/scripts/facet_contact.py", *words)
     assert run.code == 0, run.stderr
@@ -71,6 +73,9 @@ def test_the_segments_cut_wear_and_close_their_books(worn):
     exact = 0.01128 * 3e4 / 0.839 * books["friction"]["worn_by"] / (515 * 9.80665e6 - 20 / 200 * 6 * 9.80665e6)
     assert result(worn, "worn_volume") == pytest.approx(exact, rel=1e-12)
     assert (worn.out / "report.html").stat().st_size > 0
+    # At 30,000 times the face recedes faster than rock slides on it, and the run says so.
+    assert result(worn, "recession_per_slip") > 1
+    assert any("Accelerate at most" in line for line in worn.summary["warnings"])
 
 
 def test_a_half_of_the_work_wears_half(worn, tmp_path):
@@ -94,10 +99,19 @@ def test_stopped_and_resumed_equals_never_stopped(worn, tmp_path):
     assert np.array_equal(*last)
 
 
-def test_a_tool_worn_away_ends_cleanly(tmp_path):
+@pytest.mark.parametrize("kind", ["chain", "triangles"])
+def test_a_particle_inside_the_tool_is_found(kind):
+    """YADE's facets have two sides, the tool has one."""
+    found = pressed(kind)
+    assert found["outside"] is None and found["inside"].startswith("(")
+
+
+def test_wear_too_fast_for_the_shape_ends_with_what_to_change(tmp_path):
     run = cut(tmp_path / "out", acceleration=1e10, cycles=0)
-    assert run.code == 0, run.stderr
-    assert "worn away" in run.summary["ended"] and "worn away" in run.stdout
+    assert run.code == 1
+    said = next(line for line in run.stderr.splitlines() if line.startswith("error:"))
+    assert "would recede by" in said and "lower acceleration = 1e+10" in said and "Traceback" not in run.stderr
+    assert "worn" not in run.summary["ended"].replace("its wear", "")
     assert abs(run.summary["audits"]["mass"]["unexplained"]) < 1e-12 * run.summary["audits"]["mass"]["archard"]
 
 

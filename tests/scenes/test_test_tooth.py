@@ -171,7 +171,7 @@ def test_a_table_of_yade_batch_gives_a_folder_a_row(tmp_path):
                      + " ".join(["strong", *map(str, values.values()), "0.2e6", str(tmp_path / "sweep")]) + "\n", encoding="utf-8")
     done = subprocess.run(["yade-batch", "-j2", "--job-threads=1", f"--log={tmp_path}/@.log", str(table),
                            str(ROOT / "yade_scripts/test_tooth.py")],
-                          cwd=tmp_path, capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=120)
+                          cwd=tmp_path, capture_output=True, encoding="utf-8", stdin=subprocess.DEVNULL, timeout=120)
     found = {name: json.loads((tmp_path / "sweep" / name / "summary.json").read_text(encoding="utf-8"))["parameters"]["Rn"]
              for name in ("weak", "strong")}
     assert found == {"weak": 0.1e6, "strong": 0.2e6}, done.stdout + done.stderr
