@@ -60,6 +60,9 @@ class WornBoundary:
     sound one, which keeps its plane. The facet's volume is shared equally by those of its vertices that are free.
     Where vertices crowd, they slide along flat faces and straight edges, which changes no volume.
 
+    A step that would make segments cross is not taken. In space only folds between neighbouring triangles are looked
+    for: two faces of a thin part may run through each other after heavy wear, and nothing says so.
+
     `pending` holds, by facet, what has not been done yet; `kept` what fell on facets that are protected altogether.
     Raises ParameterError for a boundary that is open, folded, or not oriented outwards, or with no free vertex.
     """
