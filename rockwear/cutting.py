@@ -396,7 +396,7 @@ class Cutting(scene.Scene):
 
     def _put_back(self, folder):
         """The rock of the start-up's end, and in it the tool as it is worn now (M 9.1)."""
-        friction = self.contact.friction, self.rock_friction.law.plasticDissipation()
+        friction = self.contact.friction
         released = self.bonds.energy_released
         self.cracks_of_past_cycles += self.bonds.cracks[len(self.start["bonds"]["cracks"]):]
         O.load(str(folder / "start_up.yade.gz"))
@@ -406,8 +406,7 @@ class Cutting(scene.Scene):
         self._connect()
         self.first_iteration = O.iter
         self._put_tool_back()
-        self.contact.law.initPlasticDissipation(friction[0])
-        self.rock_friction.law.initPlasticDissipation(friction[1])
+        self.contact.law.initPlasticDissipation(friction)
         if self.heat:
             self.heat.replace_rock(self.start["rock_temperature"])
             self.heat.find_surfaces()
@@ -590,14 +589,15 @@ class Cutting(scene.Scene):
         return {**super().tables(), "wear_profile.csv": (header, self.profile.increments)}
 
     def friction_audit(self):
-        """J per metre of thickness: friction as YADE's laws dissipated it, and as it was shared out to particles.
+        """J per metre of thickness: the tool's friction as YADE's law dissipated it, and as it was shared out to particles.
 
-        `waiting` is what a law dissipated while no contact was found sliding; it goes to the next that slides.
+        `waiting` is what the law dissipated while no contact was found sliding; it goes to the next that slides.
+        The rock's friction is sampled, and goes to its particles at once.
         """
-        tool, rock = self.contact, self.rock_friction
+        tool = self.contact
         return {"tool": tool.friction, "tool_shared": tool.booked, "tool_waiting": tool.friction - tool.booked,
                 "worn_by": self.wear.work_used + float(tool.wearing_work.sum()),
-                "rock": rock.total, "rock_shared": rock.shared, "rock_waiting": rock.total - rock.shared}
+                "rock": self.rock_friction.total}
 
     def audits(self):
         """Energy, friction, mass and heat books."""

@@ -52,7 +52,7 @@ def dredging_parameters(full):
         wear_coefficient=0.0025, acceleration=1e4,
         rock_expansion=1e-5, convection=5000.0,
         ambient_temperature=283.0, rock_temperature=283.0, tool_temperature=283.0,
-        heat_period=1e-3, surface_period=0.01, record_period=2e-3) if p.name not in gone]
+        rock_sampling_period=2, heat_period=1e-3, surface_period=0.01, record_period=2e-3) if p.name not in gone]
 
 
 class Dredging(Cutting):

@@ -7,7 +7,8 @@ from yade import FrictViscoMat
 from . import scene, vtk
 from .cutting import Cutting
 from .cutting import parameters as cutting_parameters
-from .engines.facets import FacetContact, FacetWear, RockFrictionBesideFacets
+from .engines.bonds import RockFriction
+from .engines.facets import FacetContact, FacetWear
 from .facet_tool import FacetTool
 from .kernels.checks import require
 from .parameters import Parameter, above_zero, choice, flag, number
@@ -54,7 +55,7 @@ class FacetCutting(Cutting):
         v, tool = self.v, self.tool
         self.bodies = scene.FacetBodies(tool, self.motion)
         self.contact = FacetContact(tool=self.bodies, motion=motion, needs=self.wear_law.needs, neighbours=tool.neighbours)
-        self.rock_friction = RockFrictionBesideFacets(contact=self.contact, bonds=self.bonds, motion=motion)
+        self.rock_friction = RockFriction(bonds=self.bonds, motion=motion)
         self.wear = FacetWear(contact=self.contact, boundary=tool.boundary, tool=self.bodies, law=self.wear_law,
                               hardness=self.hardness(v.tool_temperature), work_fraction=v.work_fraction,
                               reshape=v.reshape, acceleration=v.acceleration)

@@ -60,7 +60,7 @@ def put_loop(*, kn, kt, mu, tool=None, damping=0.0):
     tool: (kn, kt, mu) of its contacts, None without a tool; damping: non-viscous (Cundall's), a fraction of each force.
     """
     parameters = [Ip2_FrictMat_FrictMat_FrictPhys(kn=exactly(kn), ks=exactly(kt), frictAngle=exactly(math.atan(mu)))]
-    laws = [Law2_ScGeom_FrictPhys_CundallStrack(traceEnergy=True)]
+    laws = [Law2_ScGeom_FrictPhys_CundallStrack()]
     if tool:
         tool_kn, tool_kt, tool_mu = tool
         parameters.append(Ip2_FrictMat_FrictViscoMat_FrictViscoPhys(

@@ -8,7 +8,6 @@ from ..kernels.boundary import altitudes, area_vectors
 from ..kernels.wear_laws import FRICTION, WORK
 from ..kernels.worn_boundary import STEPS, STRIDE, Folded, WornAway
 from . import Engine, contact_energy, law_functor
-from .bonds import RockFriction
 from .record import RunEnded
 from .wear import ToolContact
 
@@ -198,32 +197,6 @@ class ToolsAccount:
     def initPlasticDissipation(self, value):
         """Count on from `value` J."""
         self.contact.dissipated = value
-
-
-class RocksAccount:
-    """The rest of it, the rock's."""
-
-    def __init__(self, contact):
-        self.contact, self.functor = contact, law_functor(Law2_ScGeom_FrictViscoPhys_CundallStrackVisco)
-
-    def plasticDissipation(self):
-        """J so far."""
-        return self.functor.plasticDissipation() - self.contact.dissipated
-
-    def initPlasticDissipation(self, value):
-        """Count on from `value` J; the tool's part first."""
-        self.functor.initPlasticDissipation(value + self.contact.dissipated)
-
-
-class RockFrictionBesideFacets(RockFriction):
-    """RockFriction where the rock's contacts are of the kind of the tool's. contact: the FacetContact, restored before."""
-
-    def __init__(self, *, contact, **common):
-        super().__init__(**common)
-        self.contact = contact
-
-    def account(self):
-        return RocksAccount(self.contact)
 
 
 class FacetWear(Engine):

@@ -58,3 +58,9 @@ def test_a_bond_cycled_around_its_peak_follows_its_law(checks):
     assert max(found["deviation"] for found in checks["cycled"].values()) < 1e-13
     assert checks["cycled"]["damage"]["rests"] > 50 and checks["cycled"]["plastic"]["rests"] > 5
     assert checks["cycled without new normals"] > 0.01
+
+
+def test_discs_that_have_rolled_on_each_other_for_three_turns_break_with_the_energy_of_their_bond(checks):
+    # Where it softens with H = kn / 2, three times the strain energy at the strength.
+    for law, energy in (("brittle", 1), ("damage", 3), ("plastic", 3)):
+        assert checks["rolled"][law] == pytest.approx([energy], rel=0.02)

@@ -261,7 +261,6 @@ def two_spinning(period, duration=0.02):
     engines.enlist([friction, heat, expansion])
     for engine in (bonds, friction, heat, expansion):
         engine.connect()
-    friction.booked = friction.law.plasticDissipation()
     steps = round(period / O.dt)
     O.engines = (O.engines[:-1] + engines.runners({"rock_friction": 1}) + O.engines[-1:]
                  + engines.runners({"heat": steps, "expansion": steps}))

@@ -173,8 +173,34 @@ def cycled(law, seed=4, legs=60):
 
 def cycled_without_new_normals():
     """The same, the engine broken on purpose: after a rest the shear force is found as if nothing had slipped."""
-    with mock.patch.object(Bonds, "_bond_anew", lambda self, n, carried: None):
+    with mock.patch.object(Bonds, "_bond_anew", lambda self, n, interaction: None):
         return cycled(LAWS["plastic"])["deviation"]
+
+
+def rolled(law):
+    """A chip of two discs, joined by one bond, that roll on each other like wheels and are then torn apart.
+    -> energy of the crack over that of a bond at its strength."""
+    radii = np.array([1.0, 1.3]) * RADIUS
+    masses = 2500 * math.pi * radii**2
+    rock = SimpleNamespace(count=2, positions=np.array([(0.0, 0.0), (radii.sum(), 0.0)]), radii=radii, masses=masses,
+                           inertias=0.5 * masses * radii**2, supported=np.zeros(2, bool), pairs=np.array([(0, 1)]))
+    O.reset()
+    scene.put_rock_materials(mu=law.mu)
+    scene.put_rock(rock)
+    scene.put_loop(kn=law.kn, kt=law.kt, mu=law.mu)
+    bonds = Bonds(pairs=rock.pairs, law=law, clock=lambda: O.time)
+    scene.make_bonds(rock, bonds)
+    O.dt, speed = TIME_STEP, 2 * math.pi * 3 / (3000 * TIME_STEP)
+    engines.enlist([bonds])
+    O.engines = O.engines[:-1] + engines.runners({"bonds": 1}) + O.engines[-1:]
+    bonds.connect()
+    for body, sign in ((0, 1), (1, -1)):
+        O.bodies[body].state.angVel = (0, 0, sign * speed * radii[0] / radii[body])
+    run(3000)
+    O.dt /= 50
+    O.bodies[1].state.vel = (20.0, 0.0, 0.0)
+    run(2000)
+    return [crack.energy / (0.5 * law.Rn**2 / law.kn) for crack in bonds.cracks]
 
 
 THREE = ["brittle", "damage", "plastic"]
@@ -186,6 +212,7 @@ checks = {
     "crushed in finer steps": {name: torn(LAWS[name], CRUSH, RATE, 100, finer=8) for name in THREE},
     "erased": {name: erased(LAWS[name]) for name in THREE},
     "cycled": {name: cycled(law) for name, law in LAWS.items()},
+    "rolled": {name: rolled(LAWS[name]) for name in THREE},
     "cycled without new normals": cycled_without_new_normals(),
 }
 with open(sys.argv[-1], "w", encoding="utf-8") as file:
