@@ -9,6 +9,7 @@ from yade import NewtonIntegrator, Vector3
 from . import cutting, engines, scene, vtk
 from .cutting import Cutting
 from .engines.bonds import Bonds, LettingGo, RockFriction
+from .engines.facets import AccountOfLooseRock
 from .engines.motion import BackgroundDamping, Foresight
 from .engines.record import Recorder, Watch
 from .engines.wear import ToolContact, Wear
@@ -357,9 +358,12 @@ class LooseCutting3D(TriangleCutting3D):
     def _ways(self):
         return [("settling", self.v.settling, (0.0, 0.0)), *super()._ways()]
 
+    def _make_tool_engines(self, motion):
+        super()._make_tool_engines(motion)
+        self.rock_friction = AccountOfLooseRock(contact=self.contact, bonds=self.bonds, motion=motion)
+
     def _damping_rate(self):
         return self.v.background_damping if self.stage else self.v.settling_damping
 
     def _periods(self):
-        # Nobody asks which particles the friction of loose contacts went to: YADE's own account is all that is needed.
         return {**super()._periods(), "rock_friction": None}

@@ -8,6 +8,7 @@ from ..kernels.boundary import altitudes, area_vectors
 from ..kernels.wear_laws import FRICTION, WORK
 from ..kernels.worn_boundary import STEPS, STRIDE, Folded, WornAway
 from . import Engine, contact_energy, law_functor
+from .bonds import RockFriction
 from .record import RunEnded
 from .wear import ToolContact
 
@@ -197,6 +198,30 @@ class ToolsAccount:
     def initPlasticDissipation(self, value):
         """Count on from `value` J."""
         self.contact.dissipated = value
+
+
+class AccountOfLooseRock(RockFriction):
+    """RockFriction that nobody visits: YADE's account, less the tool's part of it.
+
+    That is enough where contacts last long against a step, and nobody asks which particles their friction went to.
+    contact: the FacetContact, restored before.
+    """
+
+    def __init__(self, *, contact, **common):
+        self.contact = contact
+        super().__init__(**common)
+
+    @property
+    def total(self):
+        """J so far."""
+        return self._law().plasticDissipation() - self.contact.dissipated
+
+    @total.setter
+    def total(self, value):
+        self._law().initPlasticDissipation(value + self.contact.dissipated)
+
+    def _law(self):
+        return law_functor(Law2_ScGeom_FrictViscoPhys_CundallStrackVisco)
 
 
 class FacetWear(Engine):
