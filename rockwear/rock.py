@@ -198,10 +198,10 @@ class Block(Specimen):
         not_negative("bonding_gap", bonding_gap, "m")
 
         def make():
-            made = packing.pack(box=box, radius_min=radius, radius_max=radius, porosity=porosity, seed=seed)
+            made = packing.pack(box=box, radius_min=radius, radius_max=radius, porosity=porosity, seed=seed, jammed=bonded)
             return {"positions": made.positions, "radii": made.radii}
 
-        stored = cached(make, box=list(box), radius=radius, porosity=porosity, seed=seed)
+        stored = cached(make, box=list(box), radius=radius, porosity=porosity, seed=seed, jammed=bonded)
         places, self.radii = stored["positions"], stored["radii"]
         self.loosened = 1.0 if bonded else self._clear(places)
         self.width, self.height, self.depth = (self.loosened * length for length in box)

@@ -4,7 +4,7 @@
 
 Numbers are M's: kn = kt = 1e6 N/m, Rn = 500 N, Rt = 5000 N, mu = 0.5, 0.1 against the tooth, 0.04 m/s, no wear. M shows
 block, tooth and depth of cut in a figure only, and gives no density: they are ours. M's spheres of 9 mm come with --full
-(11,697 of them, M has 11,700); the defaults coarsen them 1.5 times. Models II and III: cutting_3d_wear.py,
+(11,720 of them, M has 11,700); the defaults coarsen them 1.5 times. Models II and III: cutting_3d_wear.py,
 cutting_3d_removal.py.
 """
 import os

@@ -326,7 +326,8 @@ def _fit_radii(radius, draws, scales, solid, dimensions):
     return radii * (solid / volumes(radii, dimensions).sum()) ** (1 / dimensions)
 
 
-def pack(*, box=None, polygon=None, radius_min, radius_max, porosity, seed, radius_scale=None, periodic=False):
+def pack(*, box=None, polygon=None, radius_min, radius_max, porosity, seed, radius_scale=None, periodic=False,
+         jammed=True):
     """Jammed random packing of discs (2D) or spheres (3D) in a box or of discs in a polygon, as a Packing.
 
     box        sides (w, h) or (w, h, d) in m, one corner at the origin; or
@@ -339,6 +340,7 @@ def pack(*, box=None, polygon=None, radius_min, radius_max, porosity, seed, radi
     seed       integer; the same seed gives the same packing on the same numpy and scipy
     radius_scale    grading field f(positions (n, d)) -> factors (n,), at least 1: the radius at a place is a draw from
                [radius_min, radius_max] times the field there
+    jammed     False: particles that do not hold each other are welcome, for a fill that is to settle
     periodic   one flag, or one a direction: opposite sides of the box meet, there is no wall
 
     Discs of nearly equal radii order themselves into hexagonal patches: keep r_max/r_min above 1.2 or
@@ -376,7 +378,7 @@ def pack(*, box=None, polygon=None, radius_min, radius_max, porosity, seed, radi
         scale = scale_at(positions)
         radii = _fit_radii(radius, draws, scale, solid, dimensions)
         positions, imbalance = _relax(container, positions, radii)
-    require(imbalance <= MAX_IMBALANCE, "porosity", porosity,
+    require(imbalance <= MAX_IMBALANCE or not jammed, "porosity", porosity,
             "lower for the particles to hold each other: at this one they are loose")
     return Packing(positions, radii, scale, imbalance, **where)
 
