@@ -130,4 +130,6 @@ class LayeredTool:
         z = 2 * radius * (np.arange(layers) - 0.5 * (layers - 1))
         self.positions = np.column_stack([np.tile(places, (layers, 1)), np.repeat(z, len(places))])
         self.count = len(self.positions)
+        # YADE's collider finds particles with equal coordinates in one order as a run goes on, in another in a resumed one.
+        self.positions += 1e-6 * radius * np.random.default_rng(0).uniform(-1, 1, self.positions.shape)
         self.radii = np.full(self.count, radius)

@@ -8,8 +8,9 @@ import pytest
 from .conftest import ROOT, arguments, finish, history, interrupt_script, run_script, start
 
 BONDED = dict(width=0.28, height=0.1, depth=0.16, coarsening=1, radius=0.012, tool_radius=3e-3, breadth=0.04, tooth_height=0.06,
-              tooth_width=0.04, depth_of_cut=0.026, lowering_velocity=0.5, velocity=0.5, cut_time=0.09, snapshot_period=0.03)
-"""A cut as of M 13.3 through 340 spheres."""
+              tooth_width=0.04, depth_of_cut=0.026, lowering_velocity=0.5, velocity=0.5, cut_time=0.09, snapshot_period=0.03,
+              tool_kn=1e7, tool_kt=1e7)
+"""A cut as of M 13.3 through 340 spheres; tool contacts ten times as stiff as M's, whose overlaps cost the energy book 6 %."""
 LOOSE = dict(width=0.3, height=0.08, depth=0.17, coarsening=1, radius=0.012, breadth=0.04, tooth_height=0.08, tooth_width=0.04,
              depth_of_cut=0.026, freeboard=0.03, settling=0.5, lowering_velocity=0.3, cut_time=0.1, start=0.16, facet=0.03)
 """A fill as of M 13.1."""
@@ -46,7 +47,7 @@ def worn(tmp_path_factory):
 
 def test_a_tooth_of_particles_breaks_bonds_and_books_its_work(worn):
     assert value(worn, "tensile_cracks") > 10 and value(worn, "mean_cutting_force") > 0
-    books_close(worn, 0.06)
+    books_close(worn, 0.02)
 
 
 def test_worn_volume_is_archards_and_none_goes(worn):
@@ -86,14 +87,14 @@ def test_particles_go_as_they_wear(tmp_path, rule):
     shot, radii = last_snapshot(run.out), np.load(run.out / "model.npz")["tool_radii"]
     assert (shot["worn_depth"][shot["alive"]] < 2 * radii[shot["alive"]]).all()
     assert set(shot["skin"].tolist()) <= set(np.flatnonzero(shot["alive"]).tolist())
-    books_close(run, 0.06)
+    books_close(run, 0.03)
 
 
 def test_a_tooth_of_triangles_makes_a_like_cut(tmp_path, worn):
     values = {name: v for name, v in BONDED.items() if name != "tool_radius"}
     run = scene("cutting_3d_triangles", tmp_path / "run", facet=0.02, report="false", **values)
     assert run.code == 0, run.stderr
-    books_close(run, 0.06)
+    books_close(run, 0.03)
     assert value(run, "tensile_cracks") > 10 and value(run, "worn_volume") == 0
     assert 0.3 < value(run, "mean_cutting_force") / value(worn, "mean_cutting_force") < 3
 
