@@ -11,7 +11,6 @@ break, beside the scatter of the breaking rock over seeds.
 import json
 import subprocess
 import sys
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from statistics import mean, stdev
 
@@ -23,8 +22,8 @@ import numpy as np  # noqa: E402
 
 from calibration import heat as heat_study  # noqa: E402
 from calibration import loading_speed  # noqa: E402
+from calibration.runs import ROOT, RunFailed, Runs  # noqa: E402
 
-ROOT = Path(__file__).resolve().parents[1]
 SAME_PATH = {"acceleration": 100, "start_up": 0.002, "cycles": 0, "snapshot_period": 1}
 UNBREAKABLE = {**SAME_PATH, "start_up": 2e-4, "Rn": 1e12, "Rt": 1e12, "approach": 1e-4}
 BREAKING = {**SAME_PATH, "start_up": 0.004, "acceleration": 7000, "heat": "false"}
@@ -34,29 +33,19 @@ FRACTION, DEFAULT_FRACTION = [0.1, 0.2, 0.4, 0.6, 0.8, 0.9], 0.8
 SEEDS = [1, 2, 3, 4]
 
 
-def run(folder, values):
-    """One run of the main scene, unless the folder already has it. -> summary with the worn depth by tool particle."""
-    if not (folder / "summary.json").exists():
-        start(folder, values)
-    summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
-    last = sorted((folder / "snapshots").glob("*.npz"))[-1]
-    summary["worn_depth"] = np.load(last)["worn_depth"]
-    return summary
-
-
-def start(folder, values):
-    """YADE in its own process; the whole bench ends where one run does not end well."""
-    words = [word for name, value in values.items() for word in (f"--{name}", str(value))]
-    done = subprocess.run(["yade", "-n", "-x", "-j1", str(ROOT / "yade_scripts/test_tooth.py"), "--out", str(folder),
-                           "--report", "false", *words], capture_output=True, encoding="utf-8", stdin=subprocess.DEVNULL)
-    if done.returncode:
-        sys.exit(f"bench: {folder.name} ended with {done.returncode}: {done.stderr.splitlines()[-1]}")
-
-
 def run_all(folder, jobs):
-    """{name: summary} of the jobs {name: values}, two at a time."""
-    with ThreadPoolExecutor(2) as pool:
-        return dict(zip(jobs, pool.map(lambda job: run(folder / job[0], job[1]), jobs.items())))
+    """{name: summary, with the worn depth by tool particle} of runs of the main scene {name: values}, two at a time.
+
+    Runs that the folder has already are kept; the whole bench ends where one run does not end well.
+    """
+    try:
+        with Runs(folder, keep=True) as runs:
+            waiting = {name: runs.start(name, "yade_scripts/test_tooth.py", report="false", **values)
+                       for name, values in jobs.items()}
+            found = {name: future.result() for name, future in waiting.items()}
+    except RunFailed as error:
+        sys.exit(f"bench: {error}")
+    return {name: {**run.summary, "worn_depth": run.snapshot(-1)["worn_depth"]} for name, run in found.items()}
 
 
 def value(summary, name):
@@ -140,10 +129,15 @@ def markdown(result):
     return "\n".join(lines)
 
 
+def measure(script, folder):
+    """Run a measurement that is a YADE script of calibration/."""
+    subprocess.run(["yade", "-n", "-x", "-j1", str(ROOT / "calibration" / script), "--out", str(folder)], check=True,
+                   capture_output=True, stdin=subprocess.DEVNULL)
+
+
 def law_costs(folder):
     """Lines on what softening bonds cost, from calibration/law_cost.py."""
-    subprocess.run(["yade", "-n", "-x", "-j1", str(ROOT / "calibration/law_cost.py"), "--out", str(folder / "law_cost")],
-                   check=True, capture_output=True, stdin=subprocess.DEVNULL)
+    measure("law_cost.py", folder / "law_cost")
     found = json.loads((folder / "law_cost/law_cost.json").read_text(encoding="utf-8"))
     return ["", "## Bond laws", "", f"Uniaxial compression to failure, the laws in turns, {found['turns']} times, medians.", "",
             "| law | H, N/m | share of bonds past the peak: mean | at the end | ms a step | over brittle: wall | processor |",
@@ -172,8 +166,7 @@ def main(folder):
     for row, summary in zip(step, group("step-").values()):
         row["specific energy"] = abs(value(summary, "specific_energy") / exact - 1)
     seeds = {name: [runs[f"seed-{s}-{name}"] for s in SEEDS] for name in variants}
-    subprocess.run(["yade", "-n", "-x", "-j1", str(ROOT / "calibration/overhead.py"), "--out", str(folder)], check=True,
-                   capture_output=True, stdin=subprocess.DEVNULL)
+    measure("overhead.py", folder)
     overhead = json.loads((folder / "overhead.json").read_text(encoding="utf-8"))
 
     figure, axes = plt.subplots(1, 3, figsize=(15, 4.2), constrained_layout=True)

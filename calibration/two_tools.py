@@ -26,9 +26,9 @@ matplotlib.use("Agg")
 from matplotlib import pyplot  # noqa: E402
 
 from rockwear.kernels.outline import contour  # noqa: E402
+from rockwear.kernels.wear_statistics import PLACE  # noqa: E402
 from rockwear.report import plots, shapes  # noqa: E402
 
-PLACE = 2e-3
 KEPT = 20.0
 """Where runs whose tool keeps its shape stand on the axis of acceleration."""
 COLOURS = {"particles": "#2c6e91", "segments": "#cc1414"}

@@ -39,8 +39,8 @@ def tooth(runs):
         rows += [Row(f"{name}: energy explained, of the tool's work", 1.0, 1 - energy["residual"] / energy["tool_work"], 0.01),
                  Row(f"{name}: heat explained, of the heat generated", 1.0, 1 - heat["residual"] / heat["generated"], 1e-8),
                  Row(f"{name}: Archard's volume found again", 1.0, 1 + mass["unexplained"] / mass["archard"], 1e-9),
-                 Row(f"{name}: friction that wore, of what was shared", 1.0,
-                     friction["worn_by"] / friction["tool_shared"], 1e-9)]
+                 Row(f"{name}: friction that wore, of all at the tool", 1.0,
+                     friction["worn_by"] / friction["tool"], 1e-9)]
     return rows, {}
 
 

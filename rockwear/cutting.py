@@ -162,13 +162,9 @@ class Cutting(scene.Scene):
                                       conductivity=v.rock_conductivity)
         self.tool_material = Material(density=v.tool_density, specific_heat=v.tool_specific_heat,
                                       conductivity=v.tool_conductivity)
-        vertices = read_outline(v.outline) if v.outline else tooth(
-            height=v.tooth_height, width=v.tooth_width, rake=math.radians(v.rake), clearance=math.radians(v.clearance),
-            tip_radius=v.tip_radius)
-        # The depth of cut counts from the lowest point, wherever a file has its origin.
-        vertices = vertices - [0.0, vertices[:, 1].min()]
+        vertices = self._outline(v)
         self._check_size(v, vertices)
-        self.law = linear_law(v.law, kn=v.kn, kt=v.kt, Rn=v.Rn, Rt=v.Rt, H=v.H, mu=v.mu)
+        self.law = self._law(v)
         self.rock = self._specimen(v)
         self.tool = self._make_tool(vertices)
         self.motion = self._motion(v)
@@ -176,6 +172,16 @@ class Cutting(scene.Scene):
         self._plan(self._stages(v))
         self.book = {"kinetic": 0.0, "elastic": 0.0, "contact_elastic": 0.0}
         self.cracks_of_past_cycles = []
+
+    def _outline(self, v):
+        vertices = read_outline(v.outline) if v.outline else tooth(
+            height=v.tooth_height, width=v.tooth_width, rake=math.radians(v.rake), clearance=math.radians(v.clearance),
+            tip_radius=v.tip_radius)
+        # The depth of cut counts from the lowest point, wherever a file has its origin.
+        return vertices - [0.0, vertices[:, 1].min()]
+
+    def _law(self, v):
+        return linear_law(v.law, kn=v.kn, kt=v.kt, Rn=v.Rn, Rt=v.Rt, H=v.H, mu=v.mu)
 
     def _make_tool(self, vertices):
         v = self.v
@@ -298,7 +304,8 @@ class Cutting(scene.Scene):
         v, tool = self.v, self.tool
         self.bodies = scene.ToolBodies(tool, self.motion)
         self.rock_friction = RockFriction(bonds=self.bonds, motion=motion)
-        self.contact = ToolContact(tool=self.bodies, motion=motion, needs=self.wear_law.needs)
+        self.contact = ToolContact(tool=self.bodies, motion=motion, needs=self.wear_law.needs,
+                                   period=v.sampling_period)
         self.wear = Wear(contact=self.contact, erosion=tool.erosion, tool=self.bodies, law=self.wear_law,
                          hardness=self.hardness, temperature=self._tool_temperature, on_removal=self._on_removal)
         self.profile = WearProfile(erosion=tool.erosion, place=self._places()) if v.acceleration else None
@@ -346,7 +353,7 @@ class Cutting(scene.Scene):
         """{engine: steps between visits}."""
         v = self.v
         heat = max(1, self._steps(v.heat_period))
-        return {"bonds": 1, "tool_contact": v.sampling_period, "rock_friction": v.rock_sampling_period,
+        return {"bonds": 1, "tool_contact": 1, "rock_friction": v.rock_sampling_period,
                 "wear": v.wear_period, "wear_profile": PROFILE_PERIOD * v.wear_period, "heat": heat, "expansion": heat,
                 "letting_go": 200, "guide": GUIDE_PERIOD, "background_damping": v.damping_period, "watch": 200,
                 "recorder": max(1, self._steps(v.record_period))}
@@ -396,7 +403,6 @@ class Cutting(scene.Scene):
 
     def _put_back(self, folder):
         """The rock of the start-up's end, and in it the tool as it is worn now (M 9.1)."""
-        friction = self.contact.friction
         released = self.bonds.energy_released
         self.cracks_of_past_cycles += self.bonds.cracks[len(self.start["bonds"]["cracks"]):]
         O.load(str(folder / "start_up.yade.gz"))
@@ -406,7 +412,6 @@ class Cutting(scene.Scene):
         self._connect()
         self.first_iteration = O.iter
         self._put_tool_back()
-        self.contact.law.initPlasticDissipation(friction)
         if self.heat:
             self.heat.replace_rock(self.start["rock_temperature"])
             self.heat.find_surfaces()
@@ -472,9 +477,12 @@ class Cutting(scene.Scene):
         return audit
 
     def mass_audit(self):
-        """kg per metre of thickness: the volume book of the erosion times the tool's density."""
-        book = self.tool.erosion.volume_balance()
+        """kg per metre of thickness: the volume book of what is worn times the tool's density."""
+        book = self._volume_book()
         return {"initial": self.tool.area * self.tool.density, **{k: v * self.tool.density for k, v in book.items()}}
+
+    def _volume_book(self):
+        return self.tool.erosion.volume_balance()
 
     def _log(self):
         elapsed = self.recorder.elapsed()
@@ -498,14 +506,18 @@ class Cutting(scene.Scene):
 
     def snapshot(self):
         """Arrays that show the scene now."""
-        rock, erosion = self.rock, self.tool.erosion
-        broken = np.bincount(rock.pairs[self.bonds.status != 0].ravel(), minlength=rock.count)
+        erosion = self.tool.erosion
         temperature = self.heat.network.temperature if self.heat else np.empty(0)
+        return {**self._rock_and_pose(), "temperature": temperature, "alive": erosion.alive,
+                "worn_depth": erosion.stored / (2 * self.tool.radii), "skin": np.array(sorted(erosion.skin), int)}
+
+    def _rock_and_pose(self):
+        """What a snapshot shows whatever the tool is made of."""
+        rock = self.rock
         self.bodies.connect()
         return {"time": self.time, "stage": self.stage, "rock_positions": rock.current_positions(),
-                "broken_bonds": broken, "status": self.bonds.status, "temperature": temperature,
-                "tool_offset": self.bodies.pose.offset, "tool_turn": self.bodies.pose.turn, "alive": erosion.alive,
-                "worn_depth": erosion.stored / (2 * self.tool.radii), "skin": np.array(sorted(erosion.skin), int)}
+                "broken_bonds": np.bincount(rock.pairs[self.bonds.status != 0].ravel(), minlength=rock.count),
+                "status": self.bonds.status, "tool_offset": self.bodies.pose.offset, "tool_turn": self.bodies.pose.turn}
 
     def write_vtk(self, folder, number):
         """rock.NNNN.vtk and tool.NNNN.vtk: diameter, broken bonds, temperature, worn depth."""
@@ -589,14 +601,8 @@ class Cutting(scene.Scene):
         return {**super().tables(), "wear_profile.csv": (header, self.profile.increments)}
 
     def friction_audit(self):
-        """J per metre of thickness: the tool's friction as YADE's law dissipated it, and as it was shared out to particles.
-
-        `waiting` is what the law dissipated while no contact was found sliding; it goes to the next that slides.
-        The rock's friction is sampled, and goes to its particles at once.
-        """
-        tool = self.contact
-        return {"tool": tool.friction, "tool_shared": tool.booked, "tool_waiting": tool.friction - tool.booked,
-                "worn_by": self.wear.work_used + float(tool.wearing_work.sum()),
+        """J per metre of thickness: friction at the tool, what of it has worn it, and friction between rock particles."""
+        return {"tool": self.contact.friction, "worn_by": self.wear.work_used + float(self.contact.wearing_work.sum()),
                 "rock": self.rock_friction.total}
 
     def audits(self):

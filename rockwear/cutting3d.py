@@ -1,5 +1,4 @@
 """The cut in space (M 13): a tooth lowered into loose or bonded spheres, then drawn through them."""
-import math
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -19,7 +18,6 @@ from .kernels.archard import KELVIN, Hardness
 from .kernels.bond_laws import linear_law
 from .kernels.boundary import area_vectors, prism
 from .kernels.checks import require
-from .kernels.outline import read_outline, tooth
 from .kernels.rigid_motion import Straight
 from .kernels.stability import critical_time_step
 from .kernels.wear_laws import wear_law
@@ -101,7 +99,7 @@ class Cutting3D(Cutting):
         require(2 * v.radius < v.depth_of_cut < v.height, "depth_of_cut", v.depth_of_cut,
                 f"more than a rock particle, {2 * v.radius:g}, and less than the block's height {v.height:g}", "m")
         require(v.breadth < v.depth, "breadth", v.breadth, f"less than the block's depth {v.depth:g}", "m")
-        self.law = self._law()
+        self.law = self._law(v)
         self.hardness = Hardness.constant(v.hardness)
         self.wear_law = wear_law(v.wear_law, k=v.wear_coefficient, mu=v.tool_mu, exponent=v.wear_exponent,
                                  modes=v.wear_modes).scaled(v.acceleration)
@@ -130,10 +128,6 @@ class Cutting3D(Cutting):
         v.tool_temperature = KELVIN + 20  # for a hardness that is constant
         return v
 
-    def _law(self):
-        v = self.v
-        return linear_law(v.law, kn=v.kn, kt=v.kt, Rn=v.Rn, Rt=v.Rt, H=v.H, mu=v.mu)
-
     def _make_rock(self):
         v = self.v
         rock = Block(width=v.width, height=v.height, depth=v.depth, radius=v.radius, porosity=v.porosity, seed=v.seed,
@@ -145,9 +139,7 @@ class Cutting3D(Cutting):
 
     def _section(self):
         v = self.v
-        vertices = read_outline(v.outline) if v.outline else tooth(
-            height=v.tooth_height, width=v.tooth_width, rake=math.radians(v.rake), clearance=math.radians(v.clearance),
-            tip_radius=v.tip_radius)
+        vertices = self._outline(v)
         height = float(np.ptp(vertices[:, 1]))
         require(height > v.depth_of_cut, "tooth_height", height, f"more than depth_of_cut = {v.depth_of_cut:g}", "m")
         return vertices
@@ -350,8 +342,7 @@ class LooseCutting3D(TriangleCutting3D):
         room = behind + 3 * v.radius
         require(v.start > room, "start", v.start, f"more than {room:g}, for the tooth to clear the box behind it", "m")
 
-    def _law(self):
-        v = self.v
+    def _law(self, v):
         # For the friction alone: there are no bonds.
         return linear_law("brittle", kn=v.kn, kt=v.kt, Rn=v.kn, Rt=v.kt, H=v.kn, mu=v.mu)
 

@@ -69,10 +69,8 @@ class FacetCutting(Cutting):
 
     # ---- books
 
-    def mass_audit(self):
-        """kg per metre of thickness: the volume book of the boundary times the tool's density."""
-        book = self.tool.boundary.volume_balance()
-        return {"initial": self.tool.area * self.tool.density, **{k: v * self.tool.density for k, v in book.items()}}
+    def _volume_book(self):
+        return self.tool.boundary.volume_balance()
 
     # ---- what a run's folder shows
 
@@ -83,12 +81,7 @@ class FacetCutting(Cutting):
                 "tool_protected": tool.boundary.protected}
 
     def snapshot(self):
-        rock = self.rock
-        self.bodies.connect()
-        return {"time": self.time, "stage": self.stage, "rock_positions": rock.current_positions(),
-                "broken_bonds": np.bincount(rock.pairs[self.bonds.status != 0].ravel(), minlength=rock.count),
-                "status": self.bonds.status, "tool_offset": self.bodies.pose.offset, "tool_turn": self.bodies.pose.turn,
-                "tool_vertices": self.tool.boundary.vertices, "worn_volume": self.wear.worn}
+        return {**self._rock_and_pose(), "tool_vertices": self.tool.boundary.vertices, "worn_volume": self.wear.worn}
 
     def write_vtk(self, folder, number):
         """rock.NNNN.vtk and tool.NNNN.vtk: diameter, broken bonds; the tool's vertices."""

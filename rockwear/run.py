@@ -140,8 +140,9 @@ class Run:
             if not code:
                 self._snapshot()
                 self._checkpoint()
-            self._write_summary(ended)
-            for line in self.scene.warnings():
+            warnings = self.scene.warnings()
+            self._write_summary(ended, warnings)
+            for line in warnings:
                 print(f"warning: {line}", file=sys.stderr)
             if not code and self.values["report"]:
                 report.write(self.folder)
@@ -211,7 +212,7 @@ class Run:
                         write_scenes=lambda directory: self.scene.save(directory, self.folder))
         self.checkpoint_time += time.time() - begin
 
-    def _write_summary(self, ended):
+    def _write_summary(self, ended, warnings):
         scene = self.scene
         scene.recorder.write(self.folder / "history.csv")
         for name, (header, rows) in scene.tables().items():
@@ -219,7 +220,7 @@ class Run:
         ours = {engine.name: {"seconds": engine.wall_time, "visits": engine.visits} for engine in scene.live}
         python = sum(engine.wall_time for engine in scene.live)
         summary = {
-            "scene": self.name, "ended": ended, "warnings": scene.warnings(), "parameters": self.values, "seed": self.values.get("seed"),
+            "scene": self.name, "ended": ended, "warnings": warnings, "parameters": self.values, "seed": self.values.get("seed"),
             "versions": {"rockwear": __version__, "yade": yade.config.version, "python": platform.python_version(),
                          "numpy": np.__version__},
             "results": {name: {"value": _plain(value), "unit": unit} for name, (value, unit) in scene.results().items()},

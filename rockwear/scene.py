@@ -409,13 +409,17 @@ class Scene:
         last digit at first and in everything soon.
         """
         self.bonds.let_go()
-        self.rock_friction.find_contacts()
         self._fresh_bounds()
+        self.rock_friction.find_contacts()
 
     def _fresh_bounds(self):
         O.interactions.eraseNonReal()
-        collider = engines.yade_engine(InsertionSortCollider)
-        collider.doSort = True
+        # A collider sorts what it holds, and leaves equal bounds (of facets with a common vertex, of particles in a
+        # layer) in the order of its past. A loaded one has none.
+        old = engines.yade_engine(InsertionSortCollider)
+        fresh = InsertionSortCollider(old.boundDispatcher.functors, avoidSelfInteractionMask=old.avoidSelfInteractionMask,
+                                      numAction=old.numAction, verletDist=old.verletDist, doSort=True)
+        O.engines = [fresh if isinstance(engine, InsertionSortCollider) else engine for engine in O.engines]
         # A fastest velocity of zero makes the collider run in the very next step, as it does in a loaded scene. Left
         # to itself it would wait until some particle leaves its bounds, and contacts would be missed meanwhile.
         engines.yade_engine(NewtonIntegrator).maxVelocitySq = 0.0

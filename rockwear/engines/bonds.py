@@ -489,12 +489,12 @@ class RockFriction(Engine):
         self.total = 0.0
 
     def connect(self):
-        self.collider = yade_engine(InsertionSortCollider)
         self.find_contacts()
 
     def find_contacts(self):
         """Look for the contacts between rock particles that are no bonds, and for pairs that may come to touch before
         the collider runs again or a bond is let go."""
+        self.collider = yade_engine(InsertionSortCollider)
         self.seen = self.collider.numAction, self.bonds.gone
         found = [i for i in O.interactions.all() if max(i.id1, i.id2) < self.particles
                  and not isinstance(i.phys, JCFpmPhys)]

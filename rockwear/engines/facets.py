@@ -32,23 +32,18 @@ class FacetContact(ToolContact):
     facet, the contact there takes over the shear force, turned to the new normal, so that neither the history nor the
     energy of the sliding contact is lost. Two facets of an inner corner are both touched inside, and both count.
 
-    YADE's account of friction is one for rock and tool here. The tool's part is counted at each contact as YADE does:
-    what the law cut off the trial force, over the stiffness, times the force that is left. To be visited in every step.
+    YADE's account of friction is one for rock and tool here: `in_account` is the tool's part of it, slip times the force
+    after it. Every step is to be sampled.
     """
 
     def __init__(self, *, neighbours, needs=(WORK,), **common):
         super().__init__(needs=(*needs, SLIP), **common)
         self.neighbours = neighbours
-        self.springs = {}
-        self.dissipated = 0.0
-
-    def account(self):
-        return ToolsAccount(self)
+        self.in_account = 0.0
 
     def connect(self):
         super().connect()
-        self.functor = super().account()
-        self._note_springs()
+        self.functor = yades_account()
 
     def look_around(self):
         super().look_around()
@@ -61,30 +56,15 @@ class FacetContact(ToolContact):
         if self.collider.numAction != self.collided:
             self.look_around()
         successions = [pair for rock, group in self.shared for pair in self._judge(rock, group)]
-        self.dissipated += math.fsum(self._dissipation(contact) for contact in self.possible if contact[0].isReal)
-        super().act()
+        self._sample_all()
         for old, new in successions:
             self._hand_over(old, new)
         self._note_springs()
 
-    def _note_springs(self):
-        # YADE hands out its own vectors, which change with the next step.
-        self.springs = {(index, rock): Vector3(interaction.phys.shearForce)
-                        for interaction, index, rock, _ in self.possible if interaction.isReal}
-
-    def _dissipation(self, contact):
-        """J that the law took from this contact's friction in this step."""
-        interaction, index, rock, _ = contact
-        if muted(contact):
-            return 0.0
-        phys, geom = interaction.phys, interaction.geom
-        left = phys.shearForce.norm()
-        trial = geom.shearInc * -phys.ks
-        before = self.springs.get((index, rock))
-        if before is not None and before.squaredNorm() > 0:
-            turned = before - geom.normal * before.dot(geom.normal)
-            trial += turned * (before.norm() / turned.norm())
-        return max(trial.norm() - left, 0.0) * left / phys.ks
+    def _book(self, contact, before, after, slip):
+        if not muted(contact):
+            super()._book(contact, before, after, slip)
+            self.in_account += slip * after
 
     def _judge(self, rock, group):
         """Silence the contacts of a particle that have just come to be and count for nothing; wake what counts and has
@@ -153,8 +133,9 @@ class FacetContact(ToolContact):
 
     def _cancel(self, contact):
         """Take the contact's force off the particle in this step, and its friction off YADE's account."""
-        self.functor.initPlasticDissipation(self.functor.plasticDissipation() - self._dissipation(contact))
         interaction, _, rock, tool_first = contact
+        counted = self._slip(contact)[1] * interaction.phys.shearForce.norm()
+        self.functor.initPlasticDissipation(self.functor.plasticDissipation() - counted)
         force = interaction.phys.normalForce + interaction.phys.shearForce
         force = -force if tool_first else force
         O.forces.addF(rock, force)
@@ -179,25 +160,22 @@ class FacetContact(ToolContact):
     def elastic_energy(self):
         return contact_energy((i for body in self.tool.ids for i in O.interactions.withBody(body)), self.tool.overlap)
 
+    def state(self):
+        return {**super().state(), "in_account": self.in_account}
+
+    def restore(self, state):
+        super().restore(state)
+        self.in_account = float(state["in_account"])
+
 
 def muted(contact):
     """Whether this entry (interaction, facet, particle, facet first) of the contacts is muted."""
     return contact[0].phys.kn < SILENT
 
 
-class ToolsAccount:
-    """The tool's part of the one account of friction, with the names of YADE's law."""
-
-    def __init__(self, contact):
-        self.contact = contact
-
-    def plasticDissipation(self):
-        """J so far."""
-        return self.contact.dissipated
-
-    def initPlasticDissipation(self, value):
-        """Count on from `value` J."""
-        self.contact.dissipated = value
+def yades_account():
+    """The contact law that keeps YADE's account of friction."""
+    return law_functor(Law2_ScGeom_FrictViscoPhys_CundallStrackVisco)
 
 
 class AccountOfLooseRock(RockFriction):
@@ -214,14 +192,11 @@ class AccountOfLooseRock(RockFriction):
     @property
     def total(self):
         """J so far."""
-        return self._law().plasticDissipation() - self.contact.dissipated
+        return yades_account().plasticDissipation() - self.contact.in_account
 
     @total.setter
     def total(self, value):
-        self._law().initPlasticDissipation(value + self.contact.dissipated)
-
-    def _law(self):
-        return law_functor(Law2_ScGeom_FrictViscoPhys_CundallStrackVisco)
+        yades_account().initPlasticDissipation(value + self.contact.in_account)
 
 
 class FacetWear(Engine):

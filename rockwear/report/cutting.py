@@ -95,15 +95,10 @@ def stage_table(run):
     """Forces, wear and temperature stage by stage."""
     stage = run.column("stage")
 
-    def of(name, pick, k):
-        values = run.column(name)[stage == k]
-        values = values[np.isfinite(values)]
-        return float(pick(values)) if len(values) else math.nan
-
-    rows = [(stage_name(k), quantity(of("cutting_force", np.mean, k), "N/m"),
-             quantity(of("cutting_force", np.max, k), "N/m"), quantity(of("thrust_force", np.mean, k), "N/m"),
-             percent(of("mass_lost", np.max, k), 1.0),
-             quantity(of("tool_temperature_max", np.max, k), "K"))
+    rows = [(stage_name(k), quantity(run.over_stage("cutting_force", np.mean, k), "N/m"),
+             quantity(run.over_stage("cutting_force", np.max, k), "N/m"), quantity(run.over_stage("thrust_force", np.mean, k), "N/m"),
+             percent(run.over_stage("mass_lost", np.max, k), 1.0),
+             quantity(run.over_stage("tool_temperature_max", np.max, k), "K"))
             for k in np.unique(stage[np.isfinite(stage)]).astype(int)]
     header = ("", "mean cutting force", "peak", "mean thrust force", "mass lost so far", "hottest tool")
     return table(rows, header) if rows else ""

@@ -106,16 +106,11 @@ def cut_table(run):
     """Force, temperature and wear cut by cut."""
     stage = run.column("stage")
 
-    def of(name, pick, k):
-        values = run.column(name)[stage == k]
-        values = values[np.isfinite(values)]
-        return float(pick(values)) if len(values) else math.nan
-
-    rows = [(f"turn {n}", quantity(of("cutting_force", np.mean, 2 * n - 1), "N/m"),
-             quantity(of("tool_temperature_max", np.max, 2 * n - 1), "K"),
-             quantity(of("tool_temperature_hot", np.max, 2 * n - 1), "K"),
-             quantity(of("tool_temperature_max", np.min, 2 * n), "K"),
-             percent(of("mass_lost", np.max, 2 * n - 1), 1.0))
+    rows = [(f"turn {n}", quantity(run.over_stage("cutting_force", np.mean, 2 * n - 1), "N/m"),
+             quantity(run.over_stage("tool_temperature_max", np.max, 2 * n - 1), "K"),
+             quantity(run.over_stage("tool_temperature_hot", np.max, 2 * n - 1), "K"),
+             quantity(run.over_stage("tool_temperature_max", np.min, 2 * n), "K"),
+             percent(run.over_stage("mass_lost", np.max, 2 * n - 1), 1.0))
             for n in range(1, run.parameter("cycles", 0) + 1) if (stage == 2 * n - 1).any()]
     return table(rows, ("", "mean cutting force", "hottest particle", "hottest 1 % of the pick",
                         "hottest after cooling", "mass lost so far"))

@@ -52,6 +52,12 @@ class RunFolder:
         """A column of the history, nan where it was not recorded."""
         return self.columns.get(name, np.full(self.rows, np.nan))
 
+    def over_stage(self, name, pick, stage):
+        """`pick` (a mean, say) of a column's finite values in one stage, nan without any."""
+        values = self.column(name)[self.column("stage") == stage]
+        values = values[np.isfinite(values)]
+        return float(pick(values)) if len(values) else math.nan
+
     @property
     def rows(self):
         """Rows of the history."""

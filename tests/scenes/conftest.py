@@ -45,6 +45,23 @@ def run_script(script, *words, out=None, **options):
     return finish(start(script, words, **options), out)
 
 
+def checks_of(name, folder, *words):
+    """What tests/scenes/scripts/NAME.py found: a script that makes all its checks in one process, and writes them as JSON."""
+    file = folder / "checks.json"
+    done = run_script(ROOT / f"tests/scenes/scripts/{name}.py", *words, str(file))
+    assert done.code == 0, done.stderr
+    return json.loads(file.read_text(encoding="utf-8"))
+
+
+def assert_as_if_never_stopped(resumed, never, *tables):
+    """A resumed run ended with the results, audits and tables, to the last bit, of one that was never stopped."""
+    assert resumed.code == 0, resumed.stderr
+    assert resumed.summary["results"] == never.summary["results"]
+    assert resumed.summary["audits"] == never.summary["audits"]
+    for name in ("history.csv", *tables):
+        assert (resumed.out / name).read_bytes() == (never.out / name).read_bytes()
+
+
 def test_tooth(out, *flags, **values):
     """Run the miniature test tooth with some values of one's own."""
     script = ROOT / "yade_scripts/test_tooth.py"

@@ -1,11 +1,10 @@
 """Heat and mechanics on each other: thermal expansion, friction heat, and the step between the two."""
-import json
 import signal
 
 import numpy as np
 import pytest
 
-from .conftest import ROOT, interrupt, run_script, test_tooth
+from .conftest import checks_of, interrupt, test_tooth
 
 HOT = dict(rock_expansion=1e-3, start_up=6e-4, cycles=1, cycle_time=3e-4, checkpoint_interval=0.01, heat_period=2e-5)
 """A hundred times the rock's expansion, so that it tells."""
@@ -13,11 +12,8 @@ HOT = dict(rock_expansion=1e-3, start_up=6e-4, cycles=1, cycle_time=3e-4, checkp
 
 @pytest.fixture(scope="module")
 def found(tmp_path_factory):
-    file = tmp_path_factory.mktemp("coupling") / "found.json"
-    run = run_script(ROOT / "tests/scenes/scripts/coupling.py", "free", "constrained", "followed", "heated_disc",
-                     "staggered", "sliding_block", file)
-    assert run.code == 0, run.stderr
-    return json.loads(file.read_text(encoding="utf-8"))
+    return checks_of("coupling", tmp_path_factory.mktemp("coupling"), "free", "constrained", "followed", "heated_disc",
+                     "staggered", "sliding_block", "collisions")
 
 
 def test_free_heating_leaves_no_stress(found):
@@ -91,3 +87,20 @@ def test_a_cut_with_expansion_keeps_its_books_and_resumes_to_the_last_bit(tmp_pa
 def test_without_expansion_there_is_no_engine_for_it(tmp_path):
     run = test_tooth(tmp_path / "out", start_up=1e-4, cycles=0)
     assert "expansion" not in run.summary["wall_time"]["by_engine"]
+
+
+@pytest.mark.parametrize("fraction, error", [(0.8, 0.07), (0.08, 5e-4)])
+def test_what_a_disc_loses_against_the_tool_is_in_the_accounts_of_friction_and_dashpot(found, fraction, error):
+    cases = [case for case in found["collisions"] if case["fraction"] == fraction]
+    assert [case["angle"] for case in cases] == [20, 45, 70]
+    for case in cases:
+        assert case["parted"] and case["friction"] > 0.04 * case["lost"]
+        assert case["friction"] + case["dashpot"] == pytest.approx(case["lost"], rel=error)
+
+
+def test_friction_of_a_collision_is_good_at_a_step_where_yades_own_account_is_lost(found):
+    by_case = {(case["angle"], case["fraction"]): case for case in found["collisions"]}
+    for angle in (20, 45):
+        fine = by_case[angle, 0.08]["friction"]
+        assert by_case[angle, 0.8]["friction"] == pytest.approx(fine, rel=0.01)
+        assert by_case[angle, 0.8]["yade"] < 0.5 * fine

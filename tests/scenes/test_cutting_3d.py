@@ -34,7 +34,7 @@ def books_close(run, part):
     energy = run.summary["audits"]["energy"]
     assert energy["tool_work"] > 1 and abs(energy["residual"]) < part * energy["tool_work"]
     friction = run.summary["audits"]["friction"]
-    assert friction["tool_shared"] + friction["tool_waiting"] == pytest.approx(friction["tool"], rel=1e-9)
+    assert friction["worn_by"] == pytest.approx(friction["tool"], rel=1e-9)
 
 
 @pytest.fixture(scope="module")

@@ -1,19 +1,15 @@
 """Hard cases of the bond laws in YADE: many bonds gone in one step, discs erased while their bonds break, cycles around
 the peak."""
-import json
 
 import pytest
 
-from .conftest import ROOT, run_script
+from .conftest import checks_of
 
 
 @pytest.fixture(scope="module")
 def checks(tmp_path_factory):
     """All checks, made in one process of YADE."""
-    file = tmp_path_factory.mktemp("hard_cases") / "checks.json"
-    done = run_script(ROOT / "tests/scenes/scripts/hard_cases.py", str(file))
-    assert done.code == 0, done.stderr
-    return json.loads(file.read_text(encoding="utf-8"))
+    return checks_of("hard_cases", tmp_path_factory.mktemp("hard_cases"))
 
 
 @pytest.mark.parametrize("kind", ["torn in one step", "torn in a few steps", "sheared", "crushed"])

@@ -75,7 +75,7 @@ def test_other_laws_return_theirs_where_the_pressure_is_the_nominal_one(tmp_path
 
 def test_more_wear_on_less_way_is_the_same_wear_until_contacts_are_too_short(tmp_path):
     """R's two rules: what is off falls with the acceleration."""
-    off = [value(lab(tmp_path / str(factor), report="false", acceleration=factor, slip_step=2e-6), "k_deviation")
+    off = [value(lab(tmp_path / str(factor), report="false", acceleration=factor, slip_step=1e-6), "k_deviation")
            for factor in (5000, 50000)]
     assert -0.03 < off[1] < 5 * off[0] < 0 and off[0] > -2e-3
 

@@ -12,9 +12,10 @@ ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.dirname(os.path.a
 sys.path.insert(0, ROOT)
 
 import numpy as np  # noqa: E402
-from yade import O  # noqa: E402
+from yade import Law2_ScGeom_FrictViscoPhys_CundallStrackVisco, O  # noqa: E402
 
 from rockwear import engines, scene  # noqa: E402
+from rockwear.engines import law_functor  # noqa: E402
 from rockwear.engines.bonds import Bonds, RockFriction  # noqa: E402
 from rockwear.engines.expansion import Expansion  # noqa: E402
 from rockwear.engines.heat import Heat  # noqa: E402
@@ -340,7 +341,49 @@ def sliding_block():
             "spread": float(np.ptp(rise[1:]) / rise[1:].mean())}
 
 
-CHECKS = {check.__name__: check for check in (free, constrained, followed, heated_disc, staggered, sliding_block)}
+def collisions():
+    """A disc thrown askew against a disc of the tool: what it loses, and what the accounts of ToolContact have of it."""
+    radius, speed, found = 1.2e-3, 4.0, []
+    for angle in (20, 45, 70):
+        for fraction in (0.8, 0.08):
+            O.reset()
+            scene.put_rock_materials(mu=MU)
+            scene.put_steel(mu=0.3, contact_damping=0.9)
+            thrown = math.radians(angle)
+            rock = arranged([(0, 0)], radius, pairs=np.empty((0, 2)))
+            scene.put_rock(rock)
+            scene.put_loop(kn=KN, kt=KT, mu=MU, tool=(90e9, 90e9, 0.3))
+            O.bodies[0].mat = O.materials["loose rock"]
+            O.bodies[0].state.vel = (speed * math.cos(thrown), speed * math.sin(thrown), 0)
+            body = scene.finite_disc((1.5 * radius + 1e-6, 0.0), radius / 2, material="steel", mask=scene.TOOL_MASK, mass=0.0,
+                                     inertia=0.0)
+            body.state.blockedDOFs = "xyzXYZ"
+            bodies = {0: O.bodies.append(body)}
+            tool = SimpleNamespace(count=1, body_of=bodies, ids=list(bodies.values()),
+                                   velocity_at=lambda *contact: (0.0, 0.0, 0.0))
+            motion = Foresight(masses=rock.masses, inertias=rock.inertias, radii=rock.radii, held=rock.supported)
+            contact = ToolContact(tool=tool, motion=motion)
+            O.dt = fraction * 2 / math.sqrt(2 * 90e9 / rock.masses[0]) * (math.sqrt(1 + 0.81) - 0.9)
+            engines.enlist([contact])
+            O.engines = O.engines[:-1] + engines.runners({"tool_contact": 1}) + O.engines[-1:]
+            contact.connect()
+            state = O.bodies[0].state
+
+            def kinetic():
+                return 0.5 * (rock.masses[0] * state.vel.squaredNorm() + rock.inertias[0] * state.angVel.squaredNorm())
+
+            before = kinetic()
+            O.run(int(60 / fraction), True)
+            if engines.failures:
+                raise engines.failures.pop()
+            law = law_functor(Law2_ScGeom_FrictViscoPhys_CundallStrackVisco)
+            found.append({"angle": angle, "fraction": fraction, "lost": before - kinetic(), "friction": contact.friction,
+                          "dashpot": contact.dashpot_dissipated, "yade": law.plasticDissipation(),
+                          "parted": O.interactions.countReal() == 0})
+    return found
+
+
+CHECKS = {check.__name__: check for check in (free, constrained, followed, heated_disc, staggered, sliding_block, collisions)}
 *wanted, file = sys.argv[1:]
 with open(file, "w", encoding="utf-8") as stream:
     json.dump({name: CHECKS[name]() for name in wanted}, stream)

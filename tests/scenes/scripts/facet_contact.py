@@ -86,8 +86,8 @@ distance = SPEED * steps * O.dt
 force = np.array(forces)[at:]
 wear.act()
 found.update(friction=MU * FORCE * distance * count, work=contact.work_done - begun,
-             account=contact.functor.plasticDissipation() - account, own=contact.dissipated,
-             whole=contact.functor.plasticDissipation(), booked=contact.booked,
+             account=contact.functor.plasticDissipation() - account, own=contact.in_account,
+             whole=contact.functor.plasticDissipation(), slid=contact.friction,
              ripple=float(np.abs(force - force[0]).max() / FORCE),
              archard=tool.boundary.archard_volume, by_work=K / MU * wear.work_used / HARDNESS,
              removed=tool.boundary.removed, waiting=float(tool.boundary.pending.sum()), facets=tool.count,
