@@ -420,9 +420,7 @@ class Scene:
         fresh = InsertionSortCollider(old.boundDispatcher.functors, avoidSelfInteractionMask=old.avoidSelfInteractionMask,
                                       numAction=old.numAction, verletDist=old.verletDist, doSort=True)
         O.engines = [fresh if isinstance(engine, InsertionSortCollider) else engine for engine in O.engines]
-        # A fastest velocity of zero makes the collider run in the very next step, as it does in a loaded scene. Left
-        # to itself it would wait until some particle leaves its bounds, and contacts would be missed meanwhile.
-        engines.yade_engine(NewtonIntegrator).maxVelocitySq = 0.0
+        engines.collide_next_step()
 
     def end_stage(self, folder):
         """Go on to the next stage; `folder` is the run's."""

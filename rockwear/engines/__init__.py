@@ -5,7 +5,7 @@ and the table of live engines below finds it.
 """
 from time import perf_counter
 
-from yade import InteractionLoop, O, PyRunner, Sphere
+from yade import InteractionLoop, NewtonIntegrator, O, PyRunner, Sphere
 
 _live = {}
 failures = []
@@ -92,6 +92,15 @@ def yade_engine(kind):
 def law_functor(kind):
     """The contact law of the type `kind` in the scene that is in O now."""
     return next(functor for functor in yade_engine(InteractionLoop).lawDispatcher.functors if isinstance(functor, kind))
+
+
+def collide_next_step():
+    """Have the collider run in the very next step, as it does in a loaded scene.
+
+    Left to itself it would wait until some particle leaves its bounds, and contacts would be missed meanwhile. What
+    asks it to is a fastest velocity of zero.
+    """
+    yade_engine(NewtonIntegrator).maxVelocitySq = 0.0
 
 
 def overlap_of_spheres(interaction):

@@ -1,8 +1,8 @@
 """A known load on a led tool: the dead weight of a laboratory test."""
 import numpy as np
-from yade import InsertionSortCollider, O
+from yade import O
 
-from . import Engine, yade_engine
+from . import Engine, collide_next_step
 
 
 class Press(Engine):
@@ -32,7 +32,7 @@ class Press(Engine):
             state = O.bodies[body].state
             state.pos = state.pos - (0, fall, 0)
         self.descent += fall
-        yade_engine(InsertionSortCollider).doSort = True
+        collide_next_step()
 
     def state(self):
         return {"descent": self.descent}
