@@ -45,7 +45,7 @@ campaigns: setup ## a sweep of the test tooth over seeds, two jobs at a time
 	mkdir -p $(OUT)/campaign
 	yade-batch -j2 --job-threads=1 --log=$(OUT)/campaign/@.log yade_scripts/test_tooth.seeds.table yade_scripts/test_tooth.py
 
-campaign-wear: setup ## test tooth and ripper worn over many cycles, sharp and worn compared (an hour; goes on when stopped)
+campaign-wear: setup ## test tooth and ripper worn over many cycles, sharp and worn compared (four hours; goes on when stopped)
 	$(PYTHON) -m calibration.campaign_wear $(OUT)/campaign-wear
 
 campaign-uniaxial: setup ## the laboratory's laws, slopes of softening and micro-parameters (hours; goes on when stopped)

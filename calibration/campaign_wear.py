@@ -1,8 +1,8 @@
 """Wear of whole tools over many cycles: M's test tooth and ripper in full, one page.
 
-    python3 -m calibration.campaign_wear DIR            (make campaign-wear)
+    python3 -m calibration.campaign_wear DIR [CASE ...]            (make campaign-wear)
 
-Two runs at a time, a folder a run. A campaign that was stopped goes on: finished runs stay, the others resume from their
+All cases, or those named; two runs at a time, a folder a run. A campaign that was stopped goes on: finished runs stay, the others resume from their
 checkpoints. The last part cuts fresh rock with the shapes that the test tooth passed through (calibration.sharp_and_worn).
 """
 import sys
@@ -30,10 +30,8 @@ CASES = {
     "test tooth, 7000": (TOOTH, dict(LONG, acceleration=7000)),
     "ripper, 7000": (RIPPER, dict(FEW_PICTURES)),
 }
-WORN = "test tooth, 2e5"
-"""The run whose shapes are compared."""
 SAME_WORK = "test tooth, 2e5", "test tooth, 4e5", "test tooth, 8e5"
-"""R's first rule: wear twice as fast and half as long, and that again."""
+"""R's first rule: wear twice as fast and half as long, and that again. The shapes of the first are compared."""
 COARSE = dict(coarsening=3)
 """Rock graded threefold below the reach of the cut: half the time."""
 OF_M = 0.203, 40.0
@@ -48,9 +46,9 @@ def profile(run):
 def acceleration(runs):
     """Wear of the same work done at several accelerations: distributions, and how far each is from the slowest one.
 
-    Beside it stands what each run says of its own error: the difference of two runs is due to both.
+    runs: {name: RunFolder}, the slowest first. Beside it stands what each run says of its own error: the difference of
+    two runs is due to both.
     """
-    runs = {name: runs[name] for name in SAME_WORK}
     factors = np.array([run.parameter("acceleration", 1.0) for run in runs.values()])
     errors = np.array([run.result("wear_distribution_error") for run in runs.values()])
     worn = [profile(run) for run in runs.values()]
@@ -103,32 +101,41 @@ def wear_table(runs):
                              "error of the distribution", "trusted acceleration", "wear against Archard's volume"))
 
 
-def main(folder):
-    """Run what is missing, and write the page."""
-    folder = Path(folder)
+def main(folder, *names):
+    """Run what is missing of the named cases, all by default, and write the page."""
+    unknown = set(names) - set(CASES)
+    if unknown:
+        sys.exit(f"campaign_wear: no such case: {', '.join(sorted(unknown))}; there are: {'; '.join(CASES)}")
+    folder, cases = Path(folder), {name: CASES[name] for name in names or CASES}
     with Runs(folder, keep=True) as runs:
         waiting = {name: runs.start(name.replace(", ", "-").replace(" ", "_"), script, **{**COARSE, **values})
-                   for name, (script, values) in CASES.items()}
+                   for name, (script, values) in cases.items()}
         found = {name: future.result() for name, future in waiting.items()}
     with matplotlib.rc_context(plots.STYLE):
         mass_loss(found).savefig(folder / "mass_loss.png")
-        acceleration(found).savefig(folder / "acceleration.png")
+        same_work = {name: found[name] for name in SAME_WORK if name in found}
+        if len(same_work) > 1:
+            acceleration(same_work).savefig(folder / "acceleration.png")
     sections = [page.Section("How fast the tools wear", "Left as simulated, right over the time that the accelerated wear "
                              "stands for: equal rates fall on one line. The star is M's test tooth.",
-                             [page.image(folder / "mass_loss.png"), wear_table(found)]),
-                page.Section("Does acceleration change the wear?", "R: the same work at other factors must wear alike.",
-                             [page.image(folder / "acceleration.png")])]
+                             [page.image(folder / "mass_loss.png"), wear_table(found)])]
+    if len(same_work) > 1:
+        sections.append(page.Section("Does acceleration change the wear?", "R: the same work at other factors must wear "
+                                     "alike.", [page.image(folder / "acceleration.png")]))
     for name, run in found.items():
         pieces = [page.image(run.path / "figures" / f"{figure}.png") for figure in ("shape", "wear", "trust")
                   if (run.path / "figures" / f"{figure}.png").exists()]
         sections.append(page.Section(name, "", pieces))
-    sharp_and_worn.main(found[WORN].path, folder / "sharp_and_worn")
-    sections.append(page.Section("Sharp and worn", "The same rock cut by the tooth as it was new and as it wore; see "
-                                 "sharp_and_worn/report.html.", [page.image(folder / "sharp_and_worn/sharp_and_worn.png")]))
+    if same_work:
+        worn = next(iter(same_work.values()))
+        sharp_and_worn.main(worn.path, folder / "sharp_and_worn")
+        sections.append(page.Section("Sharp and worn", "The same rock cut by the tooth as it was new and as it wore; see "
+                                     "sharp_and_worn/report.html.",
+                                     [page.image(folder / "sharp_and_worn/sharp_and_worn.png")]))
     (folder / "report.html").write_text(page.document("wear", f"{len(found)} runs", sections), encoding="utf-8")
     print(folder / "report.html")
 
 
 if __name__ == "__main__":
     matplotlib.use("Agg")
-    main(sys.argv[1])
+    main(*sys.argv[1:])

@@ -414,12 +414,15 @@ class Scene:
 
     def _fresh_bounds(self):
         O.interactions.eraseNonReal()
-        # A collider sorts what it holds, and leaves equal bounds (of facets with a common vertex, of particles in a
-        # layer) in the order of its past. A loaded one has none.
-        old = engines.yade_engine(InsertionSortCollider)
-        fresh = InsertionSortCollider(old.boundDispatcher.functors, avoidSelfInteractionMask=old.avoidSelfInteractionMask,
-                                      numAction=old.numAction, verletDist=old.verletDist, doSort=True)
-        O.engines = [fresh if isinstance(engine, InsertionSortCollider) else engine for engine in O.engines]
+        collider = engines.yade_engine(InsertionSortCollider)
+        collider.doSort = True
+        if not O.bodies.useRedirection:
+            # Sorting leaves equal bounds (of facets with a common vertex) in the order of the collider's past, and a
+            # loaded one has none. (Where bodies have been erased a fresh collider would not find the others.)
+            fresh = InsertionSortCollider(boundDispatcher=collider.boundDispatcher, verletDist=collider.verletDist,
+                                          avoidSelfInteractionMask=collider.avoidSelfInteractionMask, doSort=True,
+                                          numAction=collider.numAction)
+            O.engines = [fresh if isinstance(engine, InsertionSortCollider) else engine for engine in O.engines]
         engines.collide_next_step()
 
     def end_stage(self, folder):
