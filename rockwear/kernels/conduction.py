@@ -10,8 +10,9 @@ import numpy as np
 from scipy.sparse import csr_matrix, diags
 from scipy.sparse.csgraph import connected_components
 from scipy.sparse.linalg import ArpackNoConvergence, eigsh, splu
-from scipy.spatial import ConvexHull, Voronoi
+from scipy.spatial import cKDTree
 
+from rockwear.kernels.cells import cells
 from rockwear.kernels.checks import ParameterError, not_negative, positive, require
 
 STEFAN_BOLTZMANN = 5.670374419e-8  # W/(m^2 K^4)
@@ -446,9 +447,9 @@ def effective_conductivity(*, positions, edges, conductance):
     edges        (m, 2) int
     conductance  (m,) or scalar, W/K
 
-    For each direction the outer tenths of the specimen are held at a linear temperature and the steady state is
-    solved. Flux density and gradient are both taken from the middle 60 % in every direction, so that neither the
-    held strips nor the free sides bear on the result:
+    For each direction the outer tenths of the specimen are held at a linear temperature, and with them what lies open
+    to its ends between their particles; the steady state is solved. Flux density and gradient are both taken from the
+    middle 60 % in every direction, so that neither the held strips nor the free sides bear on the result:
 
         lambda = -q/g,   q = sum_i 1/2 sum_j Q_ij (x_j - x_i) / sum_i V_i,
 
@@ -468,16 +469,17 @@ def effective_conductivity(*, positions, edges, conductance):
     inner = np.flatnonzero((abs(place - 0.5) < 0.3).all(axis=1))
     require((extent > 0).all(), "positions", extent.tolist(), "spread out in every direction", "m")
     require(inner.size > dimension, "positions", f"{n} nodes", f"more than {dimension} in the middle of the specimen")
-    cells = Voronoi(positions)
-    regions = [cells.regions[cells.point_region[i]] for i in inner]
-    require(all(-1 not in region for region in regions), "positions", f"{n} nodes", "closed around the middle")
-    volume = sum(ConvexHull(cells.vertices[region]).volume for region in regions)
+    rim = 0.5 * np.median(cKDTree(positions).query(positions, 2)[0][:, 1])
+    whole = cells(positions - low + rim, box=extent + 2 * rim)
+    volume = whole.volumes[inner].sum()
     plane = np.column_stack([positions[inner] - positions[inner].mean(axis=0), np.ones(inner.size)])
 
     conductivity = np.empty(dimension)
     for axis in range(dimension):
         network = HeatNetwork(capacity=np.ones(n), edges=edges, conductance=conductance, temperature=place[:, axis])
         strips = abs(place[:, axis] - 0.5) >= 0.4
+        for end in (2 * axis, 2 * axis + 1):
+            strips[whole.walls[end][0]] = True
         network.fix(strips, place[strips, axis])
         temperature = network.steady_state()
         flow = conductance * (temperature[i] - temperature[j])
