@@ -113,11 +113,14 @@ def overlap_of_spheres(interaction):
 
 
 def contact_energy(interactions, overlap=overlap_of_spheres):
-    """Strain energy (J) of contacts that are no bonds, sum of kn un^2/2 + Ft^2/2kt; dashpots store none.
+    """Strain energy (J) of contacts that are no bonds, sum of kn un^2/2 + Ft^2/2kt; dashpots store none, nor do contacts
+    that have just opened: YADE drops them in the next step, and their tangential force with them.
 
     (YADE's own elasticEnergy() needs a step since the scene was loaded, and counts the dashpots' force as a spring's.)
     """
     energy = 0.0
     for i in interactions:
-        energy += 0.5 * (i.phys.kn * max(overlap(i), 0.0)**2 + i.phys.shearForce.squaredNorm() / i.phys.ks)
+        depth = overlap(i)
+        if depth > 0:
+            energy += 0.5 * (i.phys.kn * depth**2 + i.phys.shearForce.squaredNorm() / i.phys.ks)
     return energy
