@@ -413,16 +413,16 @@ class Scene:
         self.rock_friction.find_contacts()
 
     def _fresh_bounds(self):
+        # Else, once a body has been erased, a fresh collider would know of no body that an earlier one has known.
+        O.bodies.enableRedirection = False
         O.interactions.eraseNonReal()
-        collider = engines.yade_engine(InsertionSortCollider)
-        collider.doSort = True
-        if not O.bodies.useRedirection:
-            # Sorting leaves equal bounds (of facets with a common vertex) in the order of the collider's past, and a
-            # loaded one has none. (Where bodies have been erased a fresh collider would not find the others.)
-            fresh = InsertionSortCollider(boundDispatcher=collider.boundDispatcher, verletDist=collider.verletDist,
-                                          avoidSelfInteractionMask=collider.avoidSelfInteractionMask, doSort=True,
-                                          numAction=collider.numAction)
-            O.engines = [fresh if isinstance(engine, InsertionSortCollider) else engine for engine in O.engines]
+        # Sorting leaves equal bounds (of facets with a common vertex, of particles in a layer) in the order of the
+        # collider's past, and a loaded one has none.
+        old = engines.yade_engine(InsertionSortCollider)
+        fresh = InsertionSortCollider(boundDispatcher=old.boundDispatcher, verletDist=old.verletDist,
+                                      avoidSelfInteractionMask=old.avoidSelfInteractionMask, doSort=True,
+                                      numAction=old.numAction)
+        O.engines = [fresh if isinstance(engine, InsertionSortCollider) else engine for engine in O.engines]
         engines.collide_next_step()
 
     def end_stage(self, folder):

@@ -11,9 +11,9 @@ sys.path.insert(0, ROOT)
 
 import numpy as np  # noqa: E402
 from scipy.spatial import cKDTree  # noqa: E402
-from yade import O  # noqa: E402
+from yade import InsertionSortCollider, O  # noqa: E402
 
-from rockwear import parameters  # noqa: E402
+from rockwear import engines, parameters  # noqa: E402
 from rockwear.cutting import PARAMETERS, Cutting  # noqa: E402
 from rockwear.kernels.wear_laws import WORK  # noqa: E402
 from rockwear.parameters import Parameter, flag  # noqa: E402
@@ -51,15 +51,23 @@ def spy(add):
     return watched
 
 
+def unseen():
+    """Bodies that the collider, once it has run again, does not know."""
+    O.run(1, True)
+    listed = engines.yade_engine(InsertionSortCollider).dumpBounds()[0]
+    return {body.id for body in O.bodies if body and body.bound} - {abs(number) for _, number in listed}
+
+
 SAW = Parameter("saw", False, "", flag, "saw the tooth in two half-way")
 values = parameters.read([*PARAMETERS, SAW], sys.argv[1:])
 scene, found = Cutting(values), []
 scene.build()
 scene.bodies.add = spy(scene.bodies.add)
 sawn = not values["saw"]
-below = []
+below, unlisted = [], set()
 while not scene.stage_done:
     scene.run_chunk()
+    unlisted |= unseen()
     if not sawn and scene.step > scene.stages[0][1] // 2:
         law, scene.wear.law = scene.wear.law, Saw()
         scene.contact.slid[WORK][0] += 1e-9
@@ -72,7 +80,7 @@ scene.wear.act()
 if scene.heat:
     scene.heat.act()
 audits = {name: book for name, (book, _) in scene.audits().items()}
-print("JSON" + json.dumps({"removed": int(np.sum(~scene.tool.erosion.alive)), "overlaps": found, "below": below,
+print("JSON" + json.dumps({"removed": int(np.sum(~scene.tool.erosion.alive)), "overlaps": found, "below": below, "unlisted": sorted(unlisted),
                            "audits": audits, "stored_heat": float(scene.heat.network.heat_content)},
                           default=lambda x: x.item()))
 sys.stdout.flush()
