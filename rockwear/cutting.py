@@ -32,7 +32,7 @@ from .tool import Tool
 
 HARDNESS = {"MET71": MET71, "MET91": MET91}
 GUIDE_PERIOD = 100
-"""Steps between the corners of a curved path."""
+"""Steps N between the corners of a curved path, which chords leave by (v dt N)^2 / 8R: 23 nm at P's pick (5.7 m/s, 0.7 m)."""
 PROFILE_PERIOD = 10
 """Visits of the wear between rows of its profile."""
 

@@ -52,6 +52,8 @@ def dredging_parameters(full):
         wear_coefficient=0.0025, acceleration=1e4,
         rock_expansion=1e-5, convection=5000.0,
         ambient_temperature=283.0, rock_temperature=283.0, tool_temperature=283.0,
+        # Of the friction in the rock, 44 % of the work of 19 ms in a cut, 2, 4 and 8 steps between samples miss or add
+        # 0.7, 2.6 and 7.1 %, at 0.60, 0.49 and 0.36 of the time that samples of every step take.
         rock_sampling_period=2, heat_period=1e-3, surface_period=0.01, record_period=2e-3) if p.name not in gone]
 
 
@@ -73,6 +75,7 @@ class Dredging(Cutting):
 
     def __init__(self, values):
         self.cooled = 0
+        self.worn_heat = 0.0
         coarse = {name: values["coarseness"] * values[name] for name in ("radius_min", "radius_max", "Rn", "Rt")}
         super().__init__({**values, **coarse})
 
@@ -187,21 +190,30 @@ class Dredging(Cutting):
         if self.heat:
             self.recorder.sources.append(self._heat_log)
 
+    def _on_removal(self, indices):
+        if self.heat:
+            network, gone = self.heat.network, self.rock.count + np.asarray(indices, int)
+            self.worn_heat += float(network.capacity[gone] @ (network.temperature[gone] - self.v.tool_temperature))
+        super()._on_removal(indices)
+
     # ---- what a checkpoint holds
 
     def state(self):
-        return {**super().state(), "cooled": self.cooled}
+        return {**super().state(), "cooled": self.cooled, "worn_heat": self.worn_heat}
 
     def restore(self, state, directory, folder):
         super().restore(state, directory, folder)
         self.cooled = int(state["cooled"])
+        self.worn_heat = float(state["worn_heat"])
 
     # ---- what a run's folder shows
 
     def _heat_log(self):
         hot, mean = self._hot_and_mean(self.heat.network)
         return {"tool_temperature_hot": (hot, "K"), "tool_temperature_mean": (mean, "K"),
-                "water_heat": (-self.heat.network.balance["convected"], "J/m")}
+                "water_heat": (-self.heat.network.balance["convected"], "J/m"),
+                "pick_friction_heat": (float(self.heat.averaged["friction_heat"].sum()), "J/m"),
+                "pick_heat_worn_away": (self.worn_heat + self.heat.carried_away, "J/m")}
 
     def _hot_and_mean(self, network):
         """Mean temperatures (K) of the hottest part of the tool's mass, and of all of it."""
@@ -217,7 +229,8 @@ class Dredging(Cutting):
         Each tool particle takes the mean power of its friction, and exchanges heat with the water and, by the mean
         conductance, with the rock that it touched; then it cools. peak, cooled: K of the hottest part at the end of
         cutting and of cooling; mean: K of the whole then; absorbed, released: J/m of friction and to water and rock,
-        which become equal in the stationary state (P 5.3).
+        which become equal in the stationary state (P 5.3). No heat goes with worn particles here: accelerated wear
+        takes away so many times too much of it.
         """
         state = self.heat.network.state()
         # Rock that has cooled down keeps out of the book.

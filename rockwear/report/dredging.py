@@ -42,16 +42,14 @@ def sections(run):
         Section("Forces", "Along and across the direction in which the pick looks; thin lines are the record, thick ones "
                 "a running mean. Only the cuts are shown, end to end.", [drawn("forces", forces(run))]),
         *([Section("Temperature during the first cut (P fig. 13)", "The tip of the pick, in its own frame. Heat arises "
-                   "in the contact and falls off steeply behind it.",
-                   [drawn("heating", tip(run, first, paint_heat(run)))]),
+                   "in the contact and falls off steeply behind it. Line: the new pick.",
+                   [drawn("heating", tip(run, first, paint_heat(run), "of cutting"))]),
            Section("Temperature while the pick cools in water after the first cut (P fig. 14)", "Water takes heat from "
                    "the surface, and conduction spreads it through the body.",
-                   [drawn("cooling", tip(run, snapshots(run, 2, COOLING_TIMES), paint_heat(run, 2)))]),
-           Section("Temperature over the turns (P fig. 15)", "Shaded: cutting. Below, the mean heating of these cuts "
-                   "is repeated on the worn pick as it is now, from the cold: peaks rise until the water takes a turn's heat "
-                   "in the same turn.", [drawn("turns", turns(run))])] if hot else []),
+                   [drawn("cooling", tip(run, snapshots(run, 2, COOLING_TIMES), paint_heat(run, 2), "after the cut"))]),
+           Section("Temperature over the turns (P fig. 15)", turns_words(run), [drawn("turns", turns(run))])] if hot else []),
         Section("Accumulated wear during the first cut (P fig. 16)", "Depth worn off each particle of the surface; pale "
-                "red: particles that are gone.", [drawn("wear", tip(run, first, paint_wear(run)))]),
+                "red: particles that are gone.", [drawn("wear", tip(run, first, paint_wear(run), "of cutting"))]),
         Section("Shape of the pick (P fig. 17)", "Dashed: the new pick. Arc length counts from the lowest point, "
                 "positive up the rake face.", [drawn("shape", worn_outlines(run, after_cuts(run)))]),
         Section("Loss of mass (P fig. 18)", "Particles gone, and Archard's volume, which they follow.",
@@ -102,18 +100,51 @@ def levelling(run):
     return f"{int(turn[np.argmax(rise >= 0.95 * rise[-1])])} turns"
 
 
-def cut_table(run):
-    """Force, temperature and wear cut by cut."""
-    stage = run.column("stage")
+def turns_words(run):
+    """What the temperature over the turns shows, and why measured peaks may not rise."""
+    made, lost = (run.column(name)[-1:] for name in ("pick_friction_heat", "pick_heat_worn_away"))
+    words = ("Shaded: cutting. Below, the mean friction heat of these cuts is repeated from the cold on the pick as it is "
+             "worn now, without further wear: peaks rise until the water takes a turn's heat in the same turn. Crosses "
+             "are the peaks above. Cuts break the rock each in its own way, and their heat differs: rings are the "
+             "same peaks for equal heat, the rise of each cut scaled to the mean heat of all.")
+    if len(made) and made[0] > 0 and lost[0] > 0:
+        words += (f" Worn particles took {100 * lost[0] / made[0]:.0f} % of the pick's friction heat away with them, and its "
+                  f"peaks lie lower for it; wear is accelerated {quantity(run.parameter('acceleration', math.nan), '-')} "
+                  "times, and real wear takes that much less. With acceleration 0 nothing is lost (M 12.1.2).")
+    return words
 
+
+def per_cut(run, name):
+    """{turn: growth of a column during its cut}."""
+    ends = {n: run.over_stage(name, lambda values: values[-1], 2 * n - 1) for n in range(1, run.parameter("cycles", 0) + 1)}
+    return {n: ends[n] - (ends[n - 1] if n > 1 else 0.0) for n in ends if np.isfinite(ends[n])}
+
+
+def measured_peaks(run):
+    """Turns, peaks of the hottest part (K), and the same for the mean heat of all cuts: arrays (n,) each."""
+    heat = per_cut(run, "pick_friction_heat")
+    done = [n for n in heat if heat[n] > 0]
+    peak = np.array([run.over_stage("tool_temperature_hot", np.max, 2 * n - 1) for n in done])
+    cold = np.array([run.over_stage("tool_temperature_hot", lambda values: values[-1], 2 * n - 2) if n > 1
+                     else run.parameter("tool_temperature", math.nan) for n in done])
+    share = np.array([heat[n] for n in done])
+    return np.array(done), peak, cold + (peak - cold) * share.mean() / share if done else peak
+
+
+def cut_table(run):
+    """Force, temperature, heat and wear cut by cut."""
+    stage = run.column("stage")
+    made, lost = per_cut(run, "pick_friction_heat"), per_cut(run, "pick_heat_worn_away")
+    cold = run.parameter("tool_temperature", math.nan)
     rows = [(f"turn {n}", quantity(run.over_stage("cutting_force", np.mean, 2 * n - 1), "N/m"),
              quantity(run.over_stage("tool_temperature_max", np.max, 2 * n - 1), "K"),
-             quantity(run.over_stage("tool_temperature_hot", np.max, 2 * n - 1), "K"),
+             f"{number(run.over_stage('tool_temperature_hot', np.max, 2 * n - 1) - cold)} K",
              quantity(run.over_stage("tool_temperature_max", np.min, 2 * n), "K"),
+             quantity(made.get(n, math.nan), "J/m"), quantity(lost.get(n, math.nan), "J/m"),
              percent(run.over_stage("mass_lost", np.max, 2 * n - 1), 1.0))
             for n in range(1, run.parameter("cycles", 0) + 1) if (stage == 2 * n - 1).any()]
-    return table(rows, ("", "mean cutting force", "hottest particle", "hottest 1 % of the pick",
-                        "hottest after cooling", "mass lost so far"))
+    return table(rows, ("", "mean cutting force", "hottest particle", "rise of the pick's hottest 1 %",
+                        "hottest after cooling", "friction heat into the pick", "heat gone with worn particles", "mass lost so far"))
 
 
 # ---- pieces of pictures
@@ -190,7 +221,7 @@ def failure(run, shown):
     return figure if shown else None
 
 
-def tip(run, shown, paint):
+def tip(run, shown, paint, words):
     """The tip in the tool's own frame at several instants; paint(axes, shot) -> what a colour bar is drawn of."""
     if not shown:
         return None
@@ -201,7 +232,7 @@ def tip(run, shown, paint):
         painted = paint(axes, run.snapshot(k)) or painted
         axes.plot(*MM * np.vstack([run.model["outline"], run.model["outline"][:1]]).T, color="black", linewidth=0.8)
         width = MM * WINDOW
-        frame(axes, (x - 1.2 * width, x + 0.8 * width, y - 4, y + 2 * width - 4), f"{seconds:.2f} s")
+        frame(axes, (x - 1.2 * width, x + 0.8 * width, y - 4, y + 2 * width - 4), f"{seconds:.2f} s {words}")
     if painted:
         figure.colorbar(painted, ax=panels, label=painted.get_label(), shrink=0.8)
     return figure
@@ -285,7 +316,10 @@ def turns(run):
     axes.set(xlabel="time / s", ylabel="°C", xlim=(0, time.max()))
     axes.legend(loc="upper right")
     for axes in below:
+        done, found, equal = measured_peaks(run)
         axes.plot(turn, peak - 273.15, "o-", color="#b5651d", markersize=4, label="hottest 1 % at the end of the cut")
+        axes.plot(done, found - 273.15, "x", color=CRACK, markersize=8, label="measured peaks")
+        axes.plot(done, equal - 273.15, "o", color=CRACK, markersize=8, fillstyle="none", label="the same for equal heat")
         axes.plot(turn, cooled - 273.15, "s-", color="#2c6e91", markersize=4, label="hottest 1 % after cooling")
         axes.plot(turn, mean - 273.15, "-", color="#444444", label="mean of the pick after cooling")
         axes.set(xlabel="turn, each with the mean heating of the cuts above", ylabel="°C", xlim=(0, turn.max() + 1))
