@@ -7,8 +7,8 @@ import pytest
 from .conftest import ROOT, SMALL, arguments, history, interrupt_script, run_script, test_tooth
 
 RIPPER = ROOT / "yade_scripts/ripper_temperature.py"
-PASSES = {**{name: value for name, value in SMALL.items() if name != "cycles"}, "start_up": 8e-4, "cycle_time": 3e-4,
-          "long_time": 1.0, "tool_radius_max": 0.52e-3, "acceleration": 1e5}
+PASSES = {**{name: value for name, value in SMALL.items() if name != "cycles"}, "approach": 1e-4, "start_up": 1e-4,
+          "cycle_time": 5e-4, "long_time": 1.0, "tool_radius_max": 0.52e-3, "acceleration": 1e5}
 
 
 def value(run, name):
