@@ -19,7 +19,7 @@ from scipy.spatial import cKDTree
 from scipy.stats import qmc
 
 from rockwear.kernels import outline
-from rockwear.kernels.checks import positive, require, within
+from rockwear.kernels.checks import ParameterError, positive, require, within
 
 SKIN = 0.6  # margin of the neighbour list, in least radii; a list lives until a particle has moved half of it
 FORCE_TOLERANCE = 1e-4  # unbalanced force to be reached, for unit contact stiffness, in least radii
@@ -217,6 +217,10 @@ class _Energy:
         return (0.5 * _dot(overlap, overlap) + wall_energy) / self.unit**2, gradient.ravel() / self.unit
 
 
+class _Restless(Exception):
+    """No minimum was found within MAX_ITERATIONS."""
+
+
 def _dot(a, b):
     return np.einsum("i,i", a, b)  # in one thread, unlike a @ b
 
@@ -259,7 +263,7 @@ def _minimise(energy, x, tolerance):
         stalled = stalled + 1 if gained <= ENERGY_TOLERANCE * value else 0
         if stalled == MEMORY:
             return x
-    raise RuntimeError(f"{x.size} variables not at rest after {MAX_ITERATIONS} iterations")
+    raise _Restless
 
 
 def _relax(container, positions, radii, tolerance=FORCE_TOLERANCE):
@@ -348,7 +352,7 @@ def pack(*, box=None, polygon=None, radius_min, radius_max, porosity, seed, radi
 
     Raises ParameterError for lengths that are not positive, radius_min > radius_max, a container whose inscribed
     radius is less than ROOM particle radii, a field below 1, and a porosity outside POROSITY_LIMITS or at which the
-    particles do not hold each other; RuntimeError if they are not at rest after MAX_ITERATIONS.
+    particles do not hold each other, or so nearly hold each other that they are not at rest after MAX_ITERATIONS.
     """
     container, where = _container(box, polygon, periodic)
     dimensions = len(container.low)
@@ -372,12 +376,16 @@ def pack(*, box=None, polygon=None, radius_min, radius_max, porosity, seed, radi
 
     positions, draws, scale = _scatter(container, radius, solid, scale_at, rng)
     radii = _fit_radii(radius, draws, scale, solid, dimensions)
-    positions, imbalance = _relax(container, positions, radii)
-    # the particles have moved in the field: fit the sizes to their new places
-    for _ in range(REGRADINGS if radius_scale is not None else 0):
-        scale = scale_at(positions)
-        radii = _fit_radii(radius, draws, scale, solid, dimensions)
+    try:
         positions, imbalance = _relax(container, positions, radii)
+        # the particles have moved in the field: fit the sizes to their new places
+        for _ in range(REGRADINGS if radius_scale is not None else 0):
+            scale = scale_at(positions)
+            radii = _fit_radii(radius, draws, scale, solid, dimensions)
+            positions, imbalance = _relax(container, positions, radii)
+    except _Restless:
+        raise ParameterError("porosity", porosity, "lower or higher: so near to where particles begin to hold each other "
+                             f"these are not at rest after {MAX_ITERATIONS} iterations") from None
     require(imbalance <= MAX_IMBALANCE or not jammed, "porosity", porosity,
             "lower for the particles to hold each other: at this one they are loose")
     return Packing(positions, radii, scale, imbalance, **where)

@@ -3,6 +3,7 @@ import numpy as np
 import pytest
 
 from rockwear.kernels import outline
+from rockwear.kernels import packing as kernel
 from rockwear.kernels.checks import ParameterError
 from rockwear.kernels.packing import (contacts, coordination, mean_overlap, pack, porosity, separation, tile,
                                       volumes)
@@ -224,6 +225,12 @@ def test_errors_name_the_parameter(change, name):
     with pytest.raises(ParameterError) as error:
         pack(**arguments)
     assert error.value.name == name and "\n" not in str(error.value)
+
+
+def test_what_does_not_come_to_rest_names_the_porosity(monkeypatch):
+    monkeypatch.setattr(kernel, "MAX_ITERATIONS", 5)
+    with pytest.raises(ParameterError, match="^porosity = 0.12: must be lower or higher.* 5 iterations$"):
+        pack(**GRAINS, box=(0.03, 0.03), porosity=0.12, seed=1)
 
 
 def test_tile_errors(periodic_tile, specimen):
