@@ -117,7 +117,20 @@ class ToolContact(Engine):
             # YADE turns the spring with the contact.
             turned = before - geom.normal * before.dot(geom.normal)
             trial += turned * (size / turned.norm())
-        return size, max(trial.norm() - phys.shearForce.norm(), 0.0) / phys.ks
+        slip = max(trial.norm() - phys.shearForce.norm(), 0.0) / phys.ks
+        return size, slip - self._too_long(interaction, slip) if slip > 0 else 0.0
+
+    @staticmethod
+    def _too_long(interaction, slip):
+        """What YADE's slip has too much, m: it turns spheres about their full radii, and scales translations up to match
+        (kernels.stability), while forces work over the way of the surfaces where they touch."""
+        geom, force = interaction.geom, interaction.phys.shearForce
+        size, length = force.norm(), geom.shearInc.norm()
+        if not size * length > 0:
+            return 0.0
+        excess = force.dot(geom.incidentVel(interaction, False) * O.dt - geom.shearInc) / size
+        # Some of the step's way may have gone into the spring.
+        return excess * min(slip / length, 1.0)
 
     def take_slid(self):
         """{(force, exponent): (m,) sum of F^exponent times slip, N^exponent m} of tool particles since the last call."""

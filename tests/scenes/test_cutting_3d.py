@@ -5,12 +5,12 @@ import signal
 import numpy as np
 import pytest
 
-from .conftest import ROOT, arguments, finish, history, interrupt_script, run_script, start
+from .conftest import (ROOT, arguments, assert_as_if_never_stopped, finish, history, interrupt_script, run_script,
+                       start)
 
 BONDED = dict(width=0.28, height=0.1, depth=0.16, coarsening=1, radius=0.012, tool_radius=3e-3, breadth=0.04, tooth_height=0.06,
-              tooth_width=0.04, depth_of_cut=0.026, lowering_velocity=0.5, velocity=0.5, cut_time=0.09, snapshot_period=0.03,
-              tool_kn=1e7, tool_kt=1e7)
-"""A cut as of M 13.3 through 340 spheres; tool contacts ten times as stiff as M's, whose overlaps cost the energy book 6 %."""
+              tooth_width=0.04, depth_of_cut=0.026, lowering_velocity=0.5, velocity=0.5, cut_time=0.09, snapshot_period=0.03)
+"""A cut as of M 13.3 through 340 spheres."""
 LOOSE = dict(width=0.3, height=0.08, depth=0.17, coarsening=1, radius=0.012, breadth=0.04, tooth_height=0.08, tooth_width=0.04,
              depth_of_cut=0.026, freeboard=0.03, settling=0.5, lowering_velocity=0.3, cut_time=0.1, start=0.16, facet=0.03)
 """A fill as of M 13.1."""
@@ -91,7 +91,8 @@ def test_particles_go_as_they_wear(tmp_path, rule):
 
 
 def test_a_tooth_of_triangles_makes_a_like_cut(tmp_path, worn):
-    values = {name: v for name, v in BONDED.items() if name != "tool_radius"}
+    # Contacts ten times as stiff as M's: overlaps of 12 % of a radius at a sharp edge cost the energy book 4 %.
+    values = {**{name: v for name, v in BONDED.items() if name != "tool_radius"}, "tool_kn": 1e7, "tool_kt": 1e7}
     run = scene("cutting_3d_triangles", tmp_path / "run", facet=0.02, report="false", **values)
     assert run.code == 0, run.stderr
     books_close(run, 0.03)
@@ -121,16 +122,19 @@ def test_the_box_carries_the_weight_of_the_fill(tmp_path):
     assert found["kinetic"] < 1e-3 * found["fallen"]
 
 
-def test_an_interrupted_cut_goes_on_bit_for_bit(tmp_path):
-    values = {**BONDED, "wear_coefficient": 1e-8, "cut_time": 0.06, "report": "false", "checkpoint_interval": 0.01}
-    script = ROOT / "yade_scripts/cutting_3d_removal.py"
-    whole = scene("cutting_3d_removal", tmp_path / "whole", **values)
+@pytest.mark.parametrize("name, own", [("cutting_3d_removal", dict(tool_radius=3e-3, wear_coefficient=1e-8)),
+                                       ("cutting_3d_triangles", dict(facet=0.02))])
+def test_an_interrupted_cut_goes_on_bit_for_bit(tmp_path, name, own):
+    values = {**{key: v for key, v in BONDED.items() if key != "tool_radius"}, "cut_time": 0.06, "report": "false",
+              "checkpoint_interval": 0.01, **own}
+    script = ROOT / f"yade_scripts/{name}.py"
+    whole = scene(name, tmp_path / "whole", **values)
     assert whole.code == 0, whole.stderr
+    # A collider that has lost sight of the rock would resume just as well.
+    assert value(whole, "mean_cutting_force") > 1000
     assert interrupt_script(script, tmp_path / "cut", signal.SIGTERM, 2, **values).code == 128 + signal.SIGTERM
     resumed = finish(start(script, [*arguments(values), "--out", str(tmp_path / "cut"), "--resume"]), tmp_path / "cut")
-    assert resumed.code == 0, resumed.stderr
-    assert (tmp_path / "cut/history.csv").read_text() == (tmp_path / "whole/history.csv").read_text()
-    assert (tmp_path / "cut/cracks.csv").read_text() == (tmp_path / "whole/cracks.csv").read_text()
+    assert_as_if_never_stopped(resumed, whole, "cracks.csv")
 
 
 @pytest.mark.parametrize("name, values, word", [

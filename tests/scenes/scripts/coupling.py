@@ -328,7 +328,8 @@ def sliding_block():
         O.run(steps, True)
         # Each turn first slackens the springs and draws them taut the other way: no heat in those.
         load = max(i.phys.normalForce.norm() for i in O.interactions if i.isReal)
-        slip += steps * O.dt * spin * stone - (1 if not turns else 2) * 0.3 * load / kt
+        slip += ((steps * O.dt * spin * stone - (1 if not turns else 2) * 0.3 * load / kt)
+                 * (1 - 0.5 * pressed / stone))  # the surfaces meet where they overlap
         turns.append(O.interactions.countReal())
     heat.act()
     if engines.failures:
