@@ -42,7 +42,7 @@ OURS = dict(
     width=0.62, height=0.22, porosity=0.36, kn=1e6, kt=1e6, Rn=500.0, Rt=5000.0, mu=0.5, tool_kn=1e6, tool_kt=1e6,
     tool_mu=0.1, contact_damping=0.0, tooth_height=0.14, tooth_width=0.0758, rake=30.0, clearance=20.0, tip_radius=4e-3,
     velocity=0.04, depth_of_cut=0.03, approach=2e-3, background_damping=20.0, hardness=1.0, wear_coefficient=0.0,
-    acceleration=1.0, removal="none", damping_period=100, rock_sampling_period=20, wear_period=10, time_step_fraction=0.5, record_period=2e-3)
+    acceleration=1.0, removal="none", damping_period=100, rock_sampling_period=20, wear_period=10, record_period=2e-3)
 """Their defaults in space: numbers of M 13.2, and sizes of ours where M shows them in a figure."""
 
 PARAMETERS = [p for p in cutting.parameters(**OURS) if p.name in SHARED] + [
@@ -52,7 +52,7 @@ PARAMETERS = [p for p in cutting.parameters(**OURS) if p.name in SHARED] + [
     Parameter("breadth", 0.057, "m", above_zero, "breadth of the tooth, across the cut", "ours"),
     Parameter("gravity", GRAVITY, "m/s2", number(0), "downwards", "M 13.1"),
     Parameter("start", 0.0, "m", number(0), "place of the tip when it is lowered, from the left end", "ours"),
-    Parameter("lowering_velocity", 0.04, "m/s", above_zero, "of the tooth on its way down", "ours: M gives none"),
+    Parameter("lowering_velocity", 0.08, "m/s", above_zero, "of the tooth on its way down", "ours: M gives none"),
     Parameter("cut_time", 1.0, "s", above_zero, "time of the horizontal cut", "M 13.3"),
     Parameter("coarsening", 1.5, "", number(1, 8), "factor on the radii of rock and tool; stiffnesses grow with it and "
               "strengths with its square, so that the rock keeps modulus and strength"),

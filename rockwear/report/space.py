@@ -31,7 +31,7 @@ def sections(run):
     def drawn(figure):
         return save(run, figure.__name__, figure(run))
 
-    rock = ("Colour: how far each sphere has moved; grey ones are held." if loose(run) else
+    rock = ("Colour: how far each sphere has moved; grey ones are held, those at the near sides not shown." if loose(run) else
             "Blue: pieces that no chain of bonds joins to the support. The darker a sphere, the more of its bonds are "
             "gone. Grey: held.")
     return [
@@ -189,12 +189,22 @@ def instants(run, most=4):
     return spread(cutting, most)
 
 
+def in_sight(run):
+    """(n,) bool, rock to show from above: all but the two sides of a box that hide the loose fill."""
+    radii, held = run.model["rock_radii"], run.model["rock_supported"]
+    width, _, depth = run.model["block"]
+    x, _, z = run.snapshot(0)["rock_positions"].T
+    return ~(loose(run) & held & ((z > 0.5 * depth - 2.5 * radii) | (x > width - 2.5 * radii)))
+
+
 def perspective(run):
     """Rock and tooth from above and in front."""
     figure, panels = canvas(11, 7.6, 2, 2)
+    shown = in_sight(run)
     for axes, k in zip(panels, instants(run)):
         shot = run.snapshot(k)
-        paint(axes, sphere_polygons(shot["rock_positions"], run.model["rock_radii"], rock_colours(run, shot), ABOVE),
+        paint(axes, sphere_polygons(shot["rock_positions"][shown], run.model["rock_radii"][shown],
+                                    rock_colours(run, shot)[shown], ABOVE),
               tooth_parts(run, shot, ABOVE), edge=0.2, frame=frame(run, ABOVE))
         axes.set_title(f"t = {number(run.times[k])} s, tip at {number(MM * shot['tool_offset'][0])} mm")
     return figure
@@ -225,10 +235,11 @@ def forces(run):
              ("side_force", "sideways", "#8a8a8a")]
     figure, (upper, lower) = canvas(10, 5.6, 2, 1, sharex=True)
     window = max(1, len(time) // 60)
+    scale, unit = (1e3, "kN") if max(np.abs(run.column(name)).max() for name, *_ in names) > 1e3 else (1.0, "N")
     for name, label, colour in names:
-        upper.plot(time, run.column(name) / 1e3, color=colour, linewidth=0.5, alpha=0.5)
-        upper.plot(time, running_mean(run.column(name), window) / 1e3, color=colour, linewidth=1.6, label=label)
-    upper.set_ylabel("force on the tooth / kN")
+        upper.plot(time, run.column(name) / scale, color=colour, linewidth=0.5, alpha=0.5)
+        upper.plot(time, running_mean(run.column(name), window) / scale, color=colour, linewidth=1.6, label=label)
+    upper.set_ylabel(f"force on the tooth / {unit}")
     upper.legend(loc="upper left")
     for name, label, colour in (("tool_work", "work of the tooth", "black"), ("tool_friction", "friction on it", "#c8a15a"),
                                 ("bond_breaking", "bonds broken", CRACK)):
