@@ -189,6 +189,14 @@ def instants(run, most=4):
     return spread(cutting, most)
 
 
+def views(*size):
+    """A canvas whose panels are empty until something is painted: a short run has fewer instants than panels."""
+    figure, panels = canvas(*size)
+    for axes in panels:
+        axes.axis("off")
+    return figure, panels
+
+
 def in_sight(run):
     """(n,) bool, rock to show from above: all but the two sides of a box that hide the loose fill."""
     radii, held = run.model["rock_radii"], run.model["rock_supported"]
@@ -199,7 +207,7 @@ def in_sight(run):
 
 def perspective(run):
     """Rock and tooth from above and in front."""
-    figure, panels = canvas(11, 7.6, 2, 2)
+    figure, panels = views(11, 7.6, 2, 2)
     shown = in_sight(run)
     for axes, k in zip(panels, instants(run)):
         shot = run.snapshot(k)
@@ -212,7 +220,7 @@ def perspective(run):
 
 def side(run):
     """The slab that the tooth runs through, cut open at its middle."""
-    figure, panels = canvas(11, 6.8, 2, 2)
+    figure, panels = views(11, 6.8, 2, 2)
     radius = run.model["rock_radii"]
     for axes, k in zip(panels, instants(run)):
         shot = run.snapshot(k)
@@ -326,7 +334,7 @@ def stages_of_wear(run):
     numbers = spread(range(len(run.times)), 4)
     radii, places = run.model["tool_radii"], run.model["tool_positions"]
     norm = Normalize(0, MM * 2 * float(radii[0]))
-    figure, panels = canvas(11, 7.2, 2, 4)
+    figure, panels = views(11, 7.2, 2, 4)
     for axes, below, k in zip(panels[:4], panels[4:], numbers):
         shot = run.snapshot(k)
         worn_tooth(axes, run, shot, norm, (50.0, 12.0))
