@@ -16,7 +16,9 @@ import numpy as np
 from calibration.runs import Runs
 from rockwear.report import plots
 
-RIPPER = dict(velocities=0.4, wear_passes=0, report="false", snapshot_period=1, coarsening=3)
+PASS = 0.016
+"""s at 4 m/s, 64 mm: over a shorter way packings differ more than anything else."""
+RIPPER = dict(velocities=0.4, wear_passes=0, cycle_time=PASS, report="false", snapshot_period=1, coarsening=3)
 QUICK = dict(radius_min=2e-3, radius_max=3e-3, Rn=0.2e6, Rt=2e6)
 """Twice the discs at the same macroscopic strength."""
 SCENES = {"ripper at 0.4 m/s": ("yade_scripts/ripper_temperature.py", RIPPER, {
@@ -31,7 +33,7 @@ def size(radius):
 
 def loading(factor):
     """The mechanics so many times as fast, over the same way."""
-    return dict(velocity=4.0 * factor, start_up=0.005 / factor, cycle_time=0.004 / factor, heat_period=1e-4 / factor,
+    return dict(velocity=4.0 * factor, start_up=0.005 / factor, cycle_time=PASS / factor, heat_period=1e-4 / factor,
                 record_period=2e-5 / factor)
 
 
@@ -65,6 +67,17 @@ def measure(folder, scene, quick=False, at_once=2):
                    for choice in choices} for what, choices in OPEN.items()}
 
 
+def together(rises):
+    """[(K, names)] of {name: K} in rising order, those within an eighth of each other as one, whose names would overlap."""
+    found = []
+    for name, rise in sorted(rises.items(), key=lambda entry: entry[1]):
+        if found and rise < 1.125 * found[-1][0]:
+            found[-1][1].append(name)
+        else:
+            found.append((rise, [name]))
+    return found
+
+
 def draw(scene, measured):
     """A panel a temperature: a bar from the lowest to the highest rise, a mark a choice."""
     names = list(next(iter(next(iter(measured.values())).values())))
@@ -75,8 +88,8 @@ def draw(scene, measured):
             colour = "0.55" if "scatter" in what else "#b5541c"
             axes.barh(row, np.ptp(rises), left=rises.min(), height=0.25, color=colour, alpha=0.5)
             axes.plot(rises, np.full(len(rises), row), "|", color=colour, markersize=14, markeredgewidth=2)
-            for k, n in enumerate(np.argsort(rises)):
-                axes.text(rises[n], row + (0.2 if k % 2 else -0.2), list(choices)[n], ha="center", fontsize=7,
+            for k, (rise, names_of_it) in enumerate(together(dict(zip(choices, rises)))):
+                axes.text(rise, row + (0.2 if k % 2 else -0.2), ", ".join(names_of_it), ha="center", fontsize=7,
                           va="top" if k % 2 else "bottom")
         every = [choice[name] for choices in measured.values() for choice in choices.values()]
         axes.set(xscale="log", xlabel="rise of the hottest particle / K", title=name,
