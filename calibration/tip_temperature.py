@@ -16,9 +16,7 @@ import numpy as np
 from calibration.runs import Runs
 from rockwear.report import plots
 
-PASS = 0.016
-"""s at 4 m/s, 64 mm: over a shorter way packings differ more than anything else."""
-RIPPER = dict(velocities=0.4, wear_passes=0, cycle_time=PASS, report="false", snapshot_period=1, coarsening=3)
+RIPPER = dict(velocities=0.4, wear_passes=0, report="false", snapshot_period=1, coarsening=3)
 QUICK = dict(radius_min=2e-3, radius_max=3e-3, Rn=0.2e6, Rt=2e6)
 """Twice the discs at the same macroscopic strength."""
 SCENES = {"ripper at 0.4 m/s": ("yade_scripts/ripper_temperature.py", RIPPER, {
@@ -33,7 +31,7 @@ def size(radius):
 
 def loading(factor):
     """The mechanics so many times as fast, over the same way."""
-    return dict(velocity=4.0 * factor, start_up=0.005 / factor, cycle_time=PASS / factor, heat_period=1e-4 / factor,
+    return dict(velocity=4.0 * factor, start_up=0.005 / factor, cycle_time=0.004 / factor, heat_period=1e-4 / factor,
                 record_period=2e-5 / factor)
 
 
