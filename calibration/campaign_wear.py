@@ -2,8 +2,9 @@
 
     python3 -m calibration.campaign_wear DIR [CASE ...]            (make campaign-wear)
 
-All cases, or those named; two runs at a time, a folder a run. A campaign that was stopped goes on: finished runs stay, the others resume from their
-checkpoints. The last part cuts fresh rock with the shapes that the test tooth passed through (calibration.sharp_and_worn).
+All cases, or those named; two runs at a time, a folder a run. A campaign that was stopped goes on: finished runs stay,
+the others resume from their checkpoints. The last part cuts fresh rock with the shapes that the test tooth passed through
+(calibration.sharp_and_worn).
 """
 import sys
 from pathlib import Path

@@ -83,10 +83,11 @@ class WearTest(scene.Scene):
     wear comes on a metre, the more contacts do (R's second rule). M's first test, 42 particles removed:
 
         acceleration          500     1000     2000     7000    50000
-        k returned, off by  -0.011   -0.023   -0.046    -0.16     -1.2  %
+        k returned, off by  -0.027   -0.055   -0.11     -0.38     -2.5  %
 
-    That is at a small slip_step; half a step of sliding is lost with each contact that closes, too. With a power of the pressure or modes, the k returned is that of the block
-    as it is: in a random packing a few particles carry all the load, and only a lattice has the nominal pressure.
+    at the default slip_step, of which half a step is lost with each such contact, too. With a power of the pressure or
+    modes, the k returned is that of the block as it is: in a random packing a few particles carry all the load, and only
+    a lattice has the nominal pressure.
     """
 
     looking = {"tool_contact"}
