@@ -10,35 +10,51 @@ calibration/results/two_tools.png. M 9.2's tooth, 3 ms, coarsening 3, no heat, f
                                                                          700 times                      7.6 +- 1.7 %
                                                                          7000 times                     3.9 +- 0.5 %
 
-So the two tools are one while they keep their shape. A face of segments recedes with every update, away from what presses
-on it, and at 7000 times by several times the way that rock slides on it (result recession_per_slip): the contact is relieved
-and the wear is no longer proportional to the acceleration. Particles keep their place until they are worn away.
+So the two tools are one while they keep their shape (make validate looks again, over three seeds). A face of segments
+recedes with every update, away from what presses on it, and at 7000 times by several times the way that rock slides on it
+(result recession_per_slip): the contact is relieved and the wear is no longer proportional to the acceleration. Particles
+keep their place until they are worn away.
 """
-import json
 import sys
 from pathlib import Path
 
 import matplotlib
 import numpy as np
 
-matplotlib.use("Agg")
-
-from matplotlib import pyplot  # noqa: E402
-
-from rockwear.kernels.outline import contour  # noqa: E402
-from rockwear.kernels.wear_statistics import PLACE  # noqa: E402
-from rockwear.report import plots, shapes  # noqa: E402
+from rockwear.kernels.outline import contour
+from rockwear.kernels.wear_statistics import PLACE
+from rockwear.report import plots, shapes
+from rockwear.report.folder import RunFolder
 
 KEPT = 20.0
 """Where runs whose tool keeps its shape stand on the axis of acceleration."""
 COLOURS = {"particles": "#2c6e91", "segments": "#cc1414"}
+EDGES = np.arange(-6e-3, 24e-3, PLACE)
+"""m; of the places along the new outline, from the tip up the front."""
 
 
-def profile(folder, tool):
-    """Depth (m) worn off the places, PLACE long, along the new outline; arc length (m) of their middles."""
-    model = np.load(folder / "model.npz")
-    shot = np.load(sorted((folder / "snapshots").glob("*.npz"))[-1])
-    if tool == "segments":
+def description(run):
+    """(tool, acceleration), the second 0 where the tool keeps its shape."""
+    tool, values = run.parameters["tool"], run.parameters
+    moves = values["reshape"] if tool == "segments" else values["removal"] != "none"
+    return tool, values["acceleration"] if moves else 0.0
+
+
+def share_of_friction(run):
+    """Friction on the tool over its work."""
+    energy = run.summary["audits"]["energy"]
+    return energy["tool_friction"] / energy["tool_work"]
+
+
+def worn_once(run):
+    """m2 worn, were it not accelerated."""
+    return run.result("worn_volume") / run.parameters["acceleration"]
+
+
+def profile(run):
+    """Depth (m) worn off the places along the new outline."""
+    model, shot = run.model, run.snapshot(-1)
+    if description(run)[0] == "segments":
         outline = model["tool_vertices"][shapes.loop(model["tool_facets"])]
         middle = model["tool_vertices"][model["tool_facets"]].mean(axis=1)
         worn = shot["worn_volume"]
@@ -48,41 +64,55 @@ def profile(folder, tool):
         worn = np.where(shot["alive"], stored, model["tool_volumes"])
     points, arc = contour(outline, 1e-4)
     nearest = np.array([np.linalg.norm(points - place, axis=1).argmin() for place in middle])
-    edges = np.arange(-6e-3, 24e-3, PLACE)
-    return 0.5 * (edges[1:] + edges[:-1]), np.histogram(arc[nearest], edges, weights=worn)[0] / PLACE
+    return np.histogram(arc[nearest], EDGES, weights=worn)[0] / PLACE
+
+
+def grouped(runs):
+    """{(tool, acceleration): its runs}."""
+    groups = {}
+    for run in runs:
+        groups.setdefault(description(run), []).append(run)
+    return dict(sorted(groups.items()))
+
+
+def scatter(values):
+    """(mean, standard error) over packings."""
+    return np.mean(values), np.std(values, ddof=1) / len(values)**0.5
+
+
+def figure(groups):
+    """Friction against acceleration, and where the wear falls on tools that keep their shape."""
+    drawn, (left, right) = plots.canvas(11, 4, 1, 2)
+    for (tool, factor), runs in groups.items():
+        shares = 100 * np.array([share_of_friction(run) for run in runs])
+        at = KEPT if factor == 0 else factor * (1.15 if tool == "segments" else 1 / 1.15)
+        left.plot(np.full(len(runs), at), shares, ".", color=COLOURS[tool], alpha=0.4)
+        left.errorbar(at, *scatter(shares), color=COLOURS[tool], marker="s", capsize=4, label=tool if factor == 0 else None)
+        if factor == 0:
+            depth = np.mean([profile(run) for run in runs], axis=0)
+            right.step(plots.MM * (EDGES[1:] + EDGES[:-1]) / 2, 100 * depth / (plots.MM * PLACE * depth.sum()), where="mid",
+                       color=COLOURS[tool], label=f"{tool}, {len(runs)} seeds")
+    left.set(xscale="log", xlabel="acceleration; leftmost: the shape is kept", ylim=(0, None),
+             ylabel="friction on the tool / % of its work", title="each seed, mean and its standard error")
+    right.set(xlabel="arc length from the tip, up the front / mm", ylabel="share of the wear / % per mm",
+              title="where wear falls, the shape kept")
+    for axes in (left, right):
+        axes.legend()
+    return drawn
 
 
 def main(folders):
-    runs = {}
-    for folder in map(Path, folders):
-        summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
-        values, energy = summary["parameters"], summary["audits"]["energy"]
-        tool = values["tool"]
-        moves = values["reshape"] if tool == "segments" else values["removal"] != "none"
-        row = summary["results"]["worn_volume"]["value"] / values["acceleration"], energy["tool_friction"] / energy["tool_work"]
-        runs.setdefault((tool, values["acceleration"] if moves else 0.0), []).append((*row, *profile(folder, tool)))
+    """Draw the figure and print a line a group."""
+    groups = grouped(map(RunFolder, folders))
+    for (tool, factor), runs in groups.items():
+        share, its_error = scatter([100 * share_of_friction(run) for run in runs])
+        worn, error = scatter([1e12 * worn_once(run) for run in runs])
+        print(f"{tool}, {f'{factor:g} times' if factor else 'shape kept'}: friction {share:.3g} +- {its_error:.2g} % of the "
+              f"tool's work, worn at 1 times {worn:.3g} +- {error:.2g} um2, {len(runs)} seeds")
     with matplotlib.rc_context(plots.STYLE):
-        figure, (left, right) = plots.canvas(11, 4, 1, 2)
-        for (tool, factor), found in sorted(runs.items()):
-            volumes, shares = np.array([row[:2] for row in found]).T
-            count, at = len(found), KEPT if factor == 0 else factor * (1.15 if tool == "segments" else 1 / 1.15)
-            left.plot(np.full(count, at), 100 * shares, ".", color=COLOURS[tool], alpha=0.4)
-            left.errorbar(at, 100 * shares.mean(), 100 * shares.std(ddof=1) / count**0.5, color=COLOURS[tool], marker="s", capsize=4)
-            print(f"{tool}, {f'{factor:g} times' if factor else 'shape kept'}: friction {100 * shares.mean():.3g} +- "
-                  f"{100 * shares.std(ddof=1) / count**0.5:.2g} % of the tool's work, worn at 1 times "
-                  f"{1e12 * volumes.mean():.3g} +- {1e12 * volumes.std(ddof=1) / count**0.5:.2g} um2, {count} seeds")
-            if factor == 0:
-                depth = np.array([row[3] for row in found]).mean(axis=0)
-                depth *= 100 / (1e3 * PLACE) / depth.sum()
-                right.step(1e3 * found[0][2], depth, where="mid", color=COLOURS[tool], label=f"{tool}, {count} seeds")
-        left.set(xscale="log", xlabel="acceleration; leftmost: the shape is kept", ylim=(0, None),
-                 ylabel="friction on the tool / % of its work", title="each seed, mean and its standard error")
-        right.set(xlabel="arc length from the tip, up the front / mm", ylabel="share of the wear / % per mm",
-                  title="where wear falls, the shape kept")
-        right.legend()
-        figure.savefig(Path(__file__).parent / "results" / "two_tools.png", dpi=80)
-        pyplot.close(figure)
+        figure(groups).savefig(Path(__file__).parent / "results" / "two_tools.png", dpi=80)
 
 
 if __name__ == "__main__":
+    matplotlib.use("Agg")
     main(sys.argv[1:])

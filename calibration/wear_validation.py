@@ -1,4 +1,9 @@
-"""Validation of wear: the laboratory test of M 6.6 returns what it was given, for M's rows and rising temperatures."""
+"""Validation of wear: the laboratory test of M 6.6 returns what it was given, for M's rows and rising temperatures, and a
+tool of segments wears like one of particles."""
+import math
+import statistics
+
+from calibration import two_tools
 from calibration.verdicts import Row, Section
 from rockwear.report.plots import MM, canvas
 
@@ -29,8 +34,28 @@ def laboratory(runs):
     return rows, {"laboratory_wear": figure}
 
 
+SEEDS = (1, 2, 3)
+TOOLS = {"particles": {"removal": "none"}, "segments": {"reshape": "false"}}
+SAME_CUT = dict(start_up=0.003, cycles=0, coarsening=3, heat="false")
+
+
+def both_tools(runs):
+    """Worn volume and friction of the two tools, whose means may differ by the scatter of their packings."""
+    groups, rows = two_tools.grouped(runs.values()), []
+    for quantity, unit, of in (("worn volume, unaccelerated", "um2", lambda run: 1e12 * two_tools.worn_once(run)),
+                               ("friction, % of the tool's work", "", lambda run: 100 * two_tools.share_of_friction(run))):
+        particles, segments = ([of(run) for run in found] for found in groups.values())
+        rows.append(Row(f"{quantity}: segments against particles", statistics.mean(particles), statistics.mean(segments),
+                        math.hypot(statistics.stdev(particles), statistics.stdev(segments)), unit))
+    return rows, {"two_tools": two_tools.figure(groups)}
+
+
 SECTIONS = [
     Section("Laboratory wear test", "A block under a known load slides and wears (M 6.6). Thin: simulated; broad: the "
             "law under the known force, integrated over the temperature on the way.", laboratory,
             {name: (SCRIPT, {**values, "report": "false"}) for name, values in {**ROWS, **RISING}.items()}),
+    Section("Particles or segments", "The same tooth in the same three packings, its shape kept, as particles and as "
+            "segments; allowed is the scatter of single packings, both tools' together.", both_tools,
+            {f"{tool}_{seed}": ("yade_scripts/test_tooth.py", {"tool": tool, "seed": seed, **SAME_CUT, **kept})
+             for tool, kept in TOOLS.items() for seed in SEEDS}),
 ]

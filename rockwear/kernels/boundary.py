@@ -57,7 +57,8 @@ def check_boundary(vertices, facets, name="boundary"):
     """(vertices, facets) as float and int arrays, vertices that no facet uses left out.
 
     Raises ParameterError (under `name`) unless the vertices are finite, no facet is degenerate, every edge (in the
-    plane: end) of a facet is that of exactly one other, run through in the opposite sense, and the volume is positive.
+    plane: end) of a facet is that of exactly one other, run through in the opposite sense, the volume is positive, and no
+    two facets run through each other.
     """
     vertices, facets = np.array(vertices, float), np.array(facets, int)
     d = vertices.shape[1] if vertices.ndim == 2 else 0
@@ -80,11 +81,25 @@ def check_boundary(vertices, facets, name="boundary"):
             "of one orientation: some facets are flipped or doubled")
     require(not single, name, f"{len(single)} open edges", "closed: it has holes")
     require(volume(vertices, facets) > 0, name, f"{len(facets)} facets", "oriented with its normals outwards")
+    through = crossings(vertices, facets)
+    require(through == 0, name, f"{through} crossings", "free of facets that run through each other")
     return vertices, facets
 
 
-def crossings(vertices, facets):
-    """How many pairs of segments cross that have no end in common."""
+def crossings(vertices, facets, moved=None):
+    """How many times facets that have no vertex in common run through each other: in the plane pairs of segments that
+    meet, in space edges that pierce a triangle. moved: (n,) bool, look only (in space) where one of these takes part."""
+    if vertices.shape[1] == 2:
+        return _meeting(vertices, facets)
+    edges = ridges(facets)
+    edges = edges[edges[:, 0] < edges[:, 1]]  # each is there in both senses
+    if moved is None:
+        return _piercing(vertices, edges, facets)
+    of_edge, of_facet = moved[edges].any(axis=1), moved[facets].any(axis=1)
+    return _piercing(vertices, edges[of_edge], facets) + _piercing(vertices, edges[~of_edge], facets[of_facet])
+
+
+def _meeting(vertices, facets):
     middle = vertices[facets].mean(axis=1)
     along = vertices[facets[:, 1]] - vertices[facets[:, 0]]
     # Two segments that meet have middles no further apart than the longest is long.
@@ -101,6 +116,40 @@ def crossings(vertices, facets):
     with np.errstate(divide="ignore", invalid="ignore"):
         s, t = cross(gap, along[j]) / det, cross(gap, along[i]) / det
         return int(np.sum((s >= 0) & (s <= 1) & (t >= 0) & (t <= 1)))
+
+
+def _piercing(vertices, edges, facets):
+    if not len(edges) or not len(facets):
+        return 0
+    i, j = _near(vertices, edges, facets)
+    apart = (edges[i][:, :, None] != facets[j][:, None, :]).all(axis=(1, 2))
+    (p, q), (a, b, c) = (np.moveaxis(vertices[rows], 1, 0) for rows in (edges[i[apart]], facets[j[apart]]))
+
+    def side(u, v, w, x):
+        return np.einsum("ni,ni->n", np.cross(v - u, w - u), x - u)
+
+    # Facets of one plane are on neither side of each other, whatever the last digits say.
+    least = 1e-9 * np.linalg.norm(np.cross(b - a, c - a), axis=1) * np.linalg.norm(q - p, axis=1)
+    above, below = side(a, b, c, p), side(a, b, c, q)
+    between = (above * below < 0) & (np.minimum(abs(above), abs(below)) > least)
+    around = np.array([side(p, q, a, b), side(p, q, b, c), side(p, q, c, a)])
+    return int(np.sum(between & ((around.min(axis=0) >= -least) | (around.max(axis=0) <= least))))
+
+
+def _near(vertices, edges, facets):
+    """Numbers (2, k) of edges and facets whose surrounding spheres meet, facets by octaves of their size."""
+    def spheres(rows):
+        middle = vertices[rows].mean(axis=1)
+        return middle, np.linalg.norm(vertices[rows] - middle[:, None], axis=2).max(axis=1)
+
+    (middle, half), (centre, radius) = spheres(edges), spheres(facets)
+    octave, numbers = np.floor(np.log2(radius)), []
+    for one in np.unique(octave):
+        mine = np.flatnonzero(octave == one)
+        found = cKDTree(centre[mine]).query_ball_point(middle, (half + radius[mine].max()) * (1 + 1e-9))
+        count = np.array([len(near) for near in found])
+        numbers.append((np.repeat(np.arange(len(edges)), count), mine[np.concatenate(found).astype(int)]))
+    return np.concatenate(numbers, axis=1)
 
 
 def nearest_on_triangle(point, triangle):

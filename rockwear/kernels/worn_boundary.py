@@ -60,8 +60,7 @@ class WornBoundary:
     sound one, which keeps its plane. The facet's volume is shared equally by those of its vertices that are free.
     Where vertices crowd, they slide along flat faces and straight edges, which changes no volume.
 
-    A step that would make segments cross is not taken. In space only folds between neighbouring triangles are looked
-    for: two faces of a thin part may run through each other after heavy wear, and nothing says so.
+    A step that would fold a facet, or make two run through each other where a part has become thin, is not taken.
 
     `pending` holds, by facet, what has not been done yet; `kept` what fell on facets that are protected altogether.
     Raises ParameterError for a boundary that is open, folded, or not oriented outwards, or with no free vertex.
@@ -219,7 +218,7 @@ class WornBoundary:
             wanted = float(weights @ part)
             moved = motion * part[:, None]
             fresh = self.vertices + moved * self._length(moved, wanted)
-            if self._holds(fresh) and not (self.dimension == 2 and crossings(fresh, self.facets)):
+            if self._holds(fresh) and not crossings(fresh, self.facets, (moved != 0).any(axis=1)):
                 break
             part = 0.5 * part
         else:

@@ -9,9 +9,10 @@ from rockwear.kernels.boundary import (altitudes, area_vectors, check_boundary, 
                                        refine, segments, volume)
 from rockwear.kernels.checks import ParameterError
 from rockwear.kernels.outline import tooth
-from rockwear.kernels.worn_boundary import WornAway, WornBoundary
+from rockwear.kernels.worn_boundary import Folded, WornAway, WornBoundary
 
 SQUARE = np.array([[0, 0], [1, 0], [1, 1], [0, 1.0]]) * 0.01
+BLADE = np.array([[-1, 0], [1, 0], [1, 20], [-1, 20.0]]) * 1e-3
 TOOTH = tooth(height=0.07, width=0.045, rake=0.0, clearance=math.radians(3), tip_radius=4e-3)
 
 
@@ -87,6 +88,8 @@ def damaged(kind):
         vertices[facets[3, 0]] = vertices[facets[3, 1]]
     if kind == "nan":
         vertices[5, 1] = np.nan
+    if kind == "crossing":
+        return np.vstack([vertices, vertices + 5e-3]), np.vstack([facets, facets + len(vertices)])
     if kind == "unknown":
         facets[0, 0] = len(vertices)
     return vertices, facets
@@ -94,7 +97,8 @@ def damaged(kind):
 
 @pytest.mark.parametrize("kind, words", [
     ("hole", "closed: it has holes"), ("flipped", "some facets are flipped"), ("inside out", "normals outwards"),
-    ("flat", "free of degenerate facets"), ("nan", "finite"), ("unknown", "known vertices")])
+    ("flat", "free of degenerate facets"), ("nan", "finite"), ("unknown", "known vertices"),
+    ("crossing", "run through each other")])
 def test_damaged_boundaries_are_refused(kind, words):
     with pytest.raises(ParameterError, match=words):
         check_boundary(*damaged(kind), name="stl")
@@ -133,6 +137,21 @@ def test_segments_that_cross_are_found():
     bow = np.array([[0, 0], [1, 1], [1, 0], [0, 1.0]])
     assert crossings(bow, np.array([[0, 1], [1, 2], [2, 3], [3, 0]])) == 1
     assert crossings(*segments(TOOTH)) == 0
+
+
+def test_triangles_that_run_through_each_other_are_found():
+    corner = np.vstack([np.zeros(3), np.eye(3)])
+    facets = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+    both = np.vstack([facets, facets + 4])
+    assert crossings(np.vstack([corner, corner + 0.2]), both) == 3
+    assert crossings(np.vstack([corner, corner + 0.4]), both) == 0
+    assert crossings(np.vstack([20 * corner - 5, corner]), both) == 0
+    assert crossings(np.vstack([20 * corner - 0.2, corner]), both) == 0
+    assert crossings(np.vstack([20 * corner - [0.2, 0.2, -0.5], corner]), both) == 3
+    assert crossings(*sphere()) == 0
+    vertices = np.vstack([corner, corner + 0.2, corner + 5])
+    for moved, found in (range(4), 3), (range(4, 8), 3), ([5], 1), ([0], 0), (range(8, 12), 0):
+        assert crossings(vertices, np.vstack([both, facets + 8]), np.isin(range(12), moved)) == found
 
 
 @pytest.mark.parametrize("point, nearest", [
@@ -245,6 +264,20 @@ def test_heavy_uneven_wear_folds_nothing_in_space():
         boundary.wear(battered(boundary, [0, 0], 0.02, 5e-4, chance))
     check_boundary(boundary.vertices, facets)
     assert sharpest(boundary) > -0.9
+    assert abs(boundary.volume_balance()["unexplained"]) < 1e-12 * boundary.archard_volume
+
+
+@pytest.mark.parametrize("make", [lambda: refine(*segments(BLADE), 1e-3), lambda: prism(BLADE, 0.01, 2e-3)])
+def test_a_blade_worn_through_from_both_sides_ends_before_its_faces_cross(make):
+    vertices, facets = make()
+    boundary = WornBoundary(vertices=vertices, facets=facets, protected=vertices[:, 1] > BLADE[:, 1].max() - 1e-9)
+    away = vertices[facets].mean(axis=1) - [0, 0.01, 0][:vertices.shape[1]]
+    sides = abs(area_vectors(vertices, facets)[:, 0]) * np.exp(-((away / 3e-3)**2)[:, 1:].sum(axis=1))
+    with pytest.raises(Folded):
+        for _ in range(400):
+            boundary.wear(sides * 2e-3 * boundary.first_volume / sides.sum())
+    assert boundary.volume > 0.5 * boundary.first_volume
+    assert crossings(boundary.vertices, facets) == 0
     assert abs(boundary.volume_balance()["unexplained"]) < 1e-12 * boundary.archard_volume
 
 
