@@ -5,7 +5,6 @@ from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
-from scipy.spatial import cKDTree
 from yade import FrictMat, O, utils
 
 from . import scene, vtk
@@ -20,11 +19,11 @@ from .kernels.bond_laws import LINEAR_LAWS, linear_law
 from .kernels.checks import require
 from .kernels.conduction import PATHS, HeatNetwork, calibrated_conductance, effusivity, effusivity_share, paths
 from .kernels.erosion import REMOVAL
-from .kernels.outline import contour, read_outline, tooth
+from .kernels.outline import read_outline, tooth
 from .kernels.rigid_motion import Straight
 from .kernels.stability import critical_time_step
 from .kernels.wear_laws import LAWS, wear_law
-from .kernels.wear_statistics import PLACE, distribution_error, events_per_particle, trusted_acceleration
+from .kernels.wear_statistics import distribution_error, events_per_particle, places, trusted_acceleration
 from .materials import Material
 from .parameters import Parameter, above_zero, choice, flag, integer, number, text
 from .rock import Specimen
@@ -144,6 +143,8 @@ class Cutting(scene.Scene):
 
     looking = {*scene.Scene.looking, "tool_contact"}
     loose_rock, put_loop = FrictMat, staticmethod(scene.put_loop)
+    piece, volume_unit = "a particle", "m3/m"
+    """What of the tool wears away in one, and the unit of its volume."""
 
     def __init__(self, values):
         self.values = values
@@ -162,11 +163,11 @@ class Cutting(scene.Scene):
                                       conductivity=v.rock_conductivity)
         self.tool_material = Material(density=v.tool_density, specific_heat=v.tool_specific_heat,
                                       conductivity=v.tool_conductivity)
-        vertices = self._outline(v)
-        self._check_size(v, vertices)
+        self.outline = self._outline(v)
+        self._check_size(v, self.outline)
         self.law = self._law(v)
         self.rock = self._specimen(v)
-        self.tool = self._make_tool(vertices)
+        self.tool = self._make_tool(self.outline)
         self.motion = self._motion(v)
         self._choose_time_step(v)
         self._plan(self._stages(v))
@@ -289,6 +290,7 @@ class Cutting(scene.Scene):
         self.bonds = Bonds(pairs=rock.pairs, law=self.law, strength_factor=rock.strength_factor, clock=lambda: self.time)
         motion = Foresight(masses=rock.masses, inertias=rock.inertias, radii=rock.radii, held=rock.supported)
         self._make_tool_engines(motion)
+        self.profile = self._profile()
         guide = Guide(bodies=self.bodies, clock=self._path_time, period=GUIDE_PERIOD) if self.motion.spin else None
         self.heat = self._heat() if v.heat else None
         self.expansion = self._expansion() if v.heat and v.rock_expansion else None
@@ -308,13 +310,12 @@ class Cutting(scene.Scene):
                                    period=v.sampling_period)
         self.wear = Wear(contact=self.contact, erosion=tool.erosion, tool=self.bodies, law=self.wear_law,
                          hardness=self.hardness, temperature=self._tool_temperature, on_removal=self._on_removal)
-        self.profile = WearProfile(erosion=tool.erosion, place=self._places()) if v.acceleration else None
 
-    def _places(self):
-        """(m,) number of the place along the first outline that each tool particle is nearest to."""
-        points, arc = contour(self.tool.vertices, PLACE / 10)
-        nearest = cKDTree(points).query(self.tool.positions)[1]
-        return np.floor((arc[nearest] - arc[0]) / PLACE).astype(int)
+    def _profile(self):
+        """The engine that R's rules are judged by, None where nothing is to wear."""
+        if not self.v.acceleration:
+            return None
+        return WearProfile(wear=self.wear, place=places(self.outline, self.tool.positions[:, :2]))
 
     def _heat(self):
         v, rock, tool = self.v, self.rock, self.tool
@@ -501,7 +502,7 @@ class Cutting(scene.Scene):
         """Arrays that stay the same all through a run."""
         rock, tool = self.rock, self.tool
         return {"rock_radii": rock.radii, "rock_supported": rock.supported, "bonds": rock.pairs, "tool_radii": tool.radii,
-                "tool_positions": tool.positions, "tool_volumes": tool.volumes, "outline": tool.vertices,
+                "tool_positions": tool.positions, "tool_volumes": tool.volumes, "outline": self.outline,
                 "box": np.array([rock.width, rock.height])}
 
     def snapshot(self):
@@ -576,9 +577,9 @@ class Cutting(scene.Scene):
 
     def _trust(self):
         """R's two rules for accelerated wear, judged from this run's own record."""
-        v, erosion = self.v, self.tool.erosion
+        v, wear = self.v, self.wear
         error = distribution_error(self.profile.increments)
-        events = events_per_particle(events=self.wear.events, worn=erosion.worn, limit=erosion.volumes)
+        events = events_per_particle(events=wear.events, worn=wear.worn, limit=wear.limit)
         trusted = trusted_acceleration(acceleration=v.acceleration, error=error, events=events, tolerance=v.wear_tolerance)
         return {"wear_distribution_error": (error, "-"), "contact_events_per_particle": (events, "-"),
                 "trusted_acceleration": (trusted, "-")}
@@ -589,7 +590,7 @@ class Cutting(scene.Scene):
         v, found = self.v, {name: value for name, (value, _) in self._trust().items()}
         if not found["trusted_acceleration"] < v.acceleration:
             return []
-        return [f"where the tool wears is known to {100 * found['wear_distribution_error']:.2g} % only, and a particle goes in "
+        return [f"where the tool wears is known to {100 * found['wear_distribution_error']:.2g} % only, and {self.piece} goes in "
                 f"{found['contact_events_per_particle']:.2g} contact events: to trust the distribution of wear to "
                 f"{100 * v.wear_tolerance:g} %, accelerate it at most {found['trusted_acceleration']:.2g} times instead of "
                 f"{v.acceleration:g}, and run that much longer"]
@@ -597,7 +598,7 @@ class Cutting(scene.Scene):
     def tables(self):
         if not self.profile:
             return super().tables()
-        header = [f"place_{n} [m3/m]" for n in range(self.profile.places)]
+        header = [f"place_{n} [{self.volume_unit}]" for n in range(self.profile.places)]
         return {**super().tables(), "wear_profile.csv": (header, self.profile.increments)}
 
     def friction_audit(self):

@@ -35,7 +35,7 @@ TOUCHING = 4
 SHARED = """porosity seed kn kt Rn Rt law H mu tool_kn tool_kt tool_mu contact_damping tool_density outline rake clearance
     tip_radius tooth_height tooth_width velocity depth_of_cut approach background_damping hardness wear_coefficient
     wear_law wear_exponent wear_modes acceleration removal time_step_fraction time_step sampling_period rock_sampling_period
-    wear_period damping_period record_period rock_density width height""".split()
+    wear_period wear_tolerance damping_period record_period rock_density width height""".split()
 """Parameters that are those of the cut in the plane."""
 
 OURS = dict(
@@ -90,6 +90,8 @@ class Cutting3D(Cutting):
     What the tooth is made of is left to others.
     """
 
+    volume_unit = "m3"
+
     def __init__(self, values):
         self.values = values
         v = self.v = self._scaled(values)
@@ -105,7 +107,8 @@ class Cutting3D(Cutting):
                                  modes=v.wear_modes).scaled(v.acceleration)
         self.gravity = Vector3(0, -v.gravity, 0) if v.gravity else None
         self.rock = self._make_rock()
-        self.tool = self._make_tool(self._section())
+        self.outline = self._section()
+        self.tool = self._make_tool(self.outline)
         self._check_start(v)
         self.ways = self._ways()
         start = v.start + v.tip_radius, v.height + v.approach
@@ -114,7 +117,7 @@ class Cutting3D(Cutting):
         self._plan({name: seconds for name, seconds, _ in self.ways})
         self.book = {"kinetic": 0.0, "elastic": 0.0, "contact_elastic": 0.0, "potential": 0.0}
         self.cracks_of_past_cycles = []
-        self.heat = self.expansion = self.profile = None
+        self.heat = self.expansion = None
 
     def _scaled(self, values):
         """The parameters with coarsening applied."""
@@ -180,12 +183,13 @@ class Cutting3D(Cutting):
         motion = Foresight(masses=rock.masses, inertias=rock.inertias, radii=rock.radii, held=rock.supported,
                            gravity=self.gravity)
         self._make_tool_engines(motion)
+        self.profile = self._profile() if v.wear_coefficient else None
         self.damping = BackgroundDamping(rate=self._damping_rate(), bodies=range(rock.count))
         self.recorder = Recorder([self._log, self.wear.log, self.bonds.log])
         pull = float(rock.masses.sum()) * v.gravity * v.radius
         self.watch = Watch(work=lambda: self.contact.work_done,
                            floor=25 * float(rock.masses.max()) * max(v.velocity, v.lowering_velocity)**2 + pull)
-        self._enlist(self.bonds, self.contact, self.rock_friction, LettingGo(self.bonds), self.wear, self.damping,
+        self._enlist(self.bonds, self.contact, self.rock_friction, LettingGo(self.bonds), self.wear, self.profile, self.damping,
                      self.recorder, self.watch)
 
     def _damping_rate(self):
@@ -194,7 +198,7 @@ class Cutting3D(Cutting):
     def _periods(self):
         v = self.v
         return {"bonds": 1, "tool_contact": v.sampling_period, "rock_friction": v.rock_sampling_period,
-                "wear": v.wear_period, "letting_go": 200, "background_damping": v.damping_period, "watch": 200,
+                "wear": v.wear_period, "wear_profile": cutting.PROFILE_PERIOD * v.wear_period, "letting_go": 200, "background_damping": v.damping_period, "watch": 200,
                 "recorder": max(1, self._steps(v.record_period))}
 
     # ---- stages
@@ -233,7 +237,7 @@ class Cutting3D(Cutting):
     def model(self):
         rock = self.rock
         return {"rock_radii": rock.radii, "rock_supported": rock.supported, "bonds": rock.pairs,
-                "block": np.array([rock.width, rock.height, rock.depth]),
+                "block": np.array([rock.width, rock.height, rock.depth]), "outline": self.outline,
                 "stage_names": np.array([name for name, _ in self.stages]), **self._tool_model()}
 
     def snapshot(self):
@@ -253,6 +257,8 @@ class Cutting3D(Cutting):
             for name in ("cutting_force", "thrust_force"):
                 found[f"mean_{name}"] = float(columns[name][cut].mean()), "N"
             found["peak_cutting_force"] = float(columns["cutting_force"][cut].max()), "N"
+        if self.profile:
+            found.update(self._trust())
         return found
 
     def write_vtk(self, folder, number):

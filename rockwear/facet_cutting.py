@@ -9,8 +9,10 @@ from .cutting import Cutting
 from .cutting import parameters as cutting_parameters
 from .engines.bonds import RockFriction
 from .engines.facets import FacetContact, FacetWear
+from .engines.wear import WearProfile
 from .facet_tool import FacetTool
 from .kernels.checks import require
+from .kernels.wear_statistics import places
 from .parameters import Parameter, above_zero, choice, flag, number
 
 OF_FACETS = [
@@ -42,6 +44,7 @@ class FacetCutting(Cutting):
     """Cutting with a tool of segments. Its hardness is that at the tool's first temperature: it has no heat."""
 
     loose_rock, put_loop = FrictViscoMat, staticmethod(scene.put_loop_with_facets)
+    piece = "a layer as deep as its facet"
 
     def __init__(self, values):
         require(not values["heat"], "heat", "true", "false: heat is for a tool of particles")
@@ -59,7 +62,13 @@ class FacetCutting(Cutting):
         self.wear = FacetWear(contact=self.contact, boundary=tool.boundary, tool=self.bodies, law=self.wear_law,
                               hardness=self.hardness(v.tool_temperature), work_fraction=v.work_fraction,
                               reshape=v.reshape, acceleration=v.acceleration)
-        self.profile = None
+
+    def _profile(self):
+        tool = self.tool
+        if not (self.v.acceleration and self.v.wear_coefficient and self.v.reshape):
+            return None
+        middle = tool.first[tool.boundary.facets].mean(axis=1)
+        return WearProfile(wear=self.wear, place=places(self.outline, middle[:, :2]))
 
     def _put_tool(self):
         self.bodies.add(range(self.tool.count))
@@ -78,7 +87,7 @@ class FacetCutting(Cutting):
         rock, tool = self.rock, self.tool
         return {"rock_radii": rock.radii, "rock_supported": rock.supported, "bonds": rock.pairs,
                 "box": np.array([rock.width, rock.height]), "tool_vertices": tool.first, "tool_facets": tool.boundary.facets,
-                "tool_protected": tool.boundary.protected}
+                "outline": self.outline, "tool_protected": tool.boundary.protected}
 
     def snapshot(self):
         return {**self._rock_and_pose(), "tool_vertices": self.tool.boundary.vertices, "worn_volume": self.wear.worn}
@@ -101,9 +110,11 @@ class FacetCutting(Cutting):
 
     def warnings(self):
         recession = self.wear.recession
+        found = super().warnings()
         if not self.v.reshape or not recession > RECESSION:
-            return []
-        return [f"the face recedes by {recession:.2g} of the way that rock slides on it, away from what presses there: less "
+            return found
+        return [*found,
+                f"the face recedes by {recession:.2g} of the way that rock slides on it, away from what presses there: less "
                 f"wears than the same work at a lower acceleration would. Accelerate at most "
                 f"{self.v.acceleration * RECESSION / recession:.2g} times instead of {self.v.acceleration:g}, and run that "
                 "much longer"]

@@ -7,10 +7,10 @@ from yade import Law2_ScGeom_FrictViscoPhys_CundallStrackVisco, O, Vector3
 from ..kernels.boundary import altitudes, area_vectors
 from ..kernels.wear_laws import FRICTION, WORK
 from ..kernels.worn_boundary import STEPS, STRIDE, Folded, WornAway
-from . import Engine, contact_energy, law_functor
+from . import contact_energy, law_functor
 from .bonds import RockFriction
 from .record import RunEnded
-from .wear import ToolContact
+from .wear import ToolContact, WearEngine
 
 MUTE = 2.0**-100
 """Factor on the stiffness of a contact that does not count: not zero, which YADE divides by, and exact to undo."""
@@ -199,13 +199,13 @@ class AccountOfLooseRock(RockFriction):
         yades_account().initPlasticDissipation(value + self.contact.in_account)
 
 
-class FacetWear(Engine):
+class FacetWear(WearEngine):
     """Wear of a tool of facets: what its contacts wear off each facet becomes a motion of the vertices (R 2.5).
 
-    contact: the FacetContact that says where the tool slides; boundary: kernels.worn_boundary.WornBoundary; tool: its
-    bodies; law: of kernels.wear_laws, accelerated; hardness: Pa; work_fraction: the part of the friction work that
-    counts as the tool's (R 2-53 takes one half, Archard's law all of it); reshape: False leaves the shape as it is, and
-    only `worn`, the volume (m,) m3 worn off each facet, grows; acceleration: the law's, for what is said of it.
+    boundary: kernels.worn_boundary.WornBoundary; tool: its bodies; hardness: Pa; work_fraction: the part of the friction
+    work that counts as the tool's (R 2-53 takes one half, Archard's law all of it); reshape: False leaves the shape as it
+    is, and only `worn` grows; acceleration: the law's, for what is said of it. `limit` is a layer of a facet as deep as
+    the new facet's smallest altitude: what a particle of that size would be.
 
     `recession` is the mean over the worn volume of what a facet recedes over the way slid on it, dw/ds of Archard's law.
     Where it is not small, a face recedes from what presses on it: the contact is relieved, and wear is no longer
@@ -213,23 +213,24 @@ class FacetWear(Engine):
     than vertices can go, where the boundary would fold, and where a particle has come to the inner side of a facet.
     """
 
-    name = "wear"
-
     def __init__(self, *, contact, boundary, tool, law, hardness, work_fraction=1.0, reshape=True, acceleration=1.0):
-        super().__init__()
-        self.contact, self.boundary, self.tool, self.law, self.hardness = contact, boundary, tool, law, hardness
+        super().__init__(contact=contact, law=law, count=len(boundary.facets))
+        self.boundary, self.tool, self.hardness = boundary, tool, hardness
         self.work_fraction, self.reshape, self.acceleration = work_fraction, reshape, acceleration
         self.worn = np.zeros(len(boundary.facets))
-        self.contact_energy_removed = self.work_used = self.receded = 0.0
+        self.receded = 0.0
+        self.limit = self._areas() * altitudes(boundary.vertices, boundary.facets)
+
+    def _areas(self):
+        return np.linalg.norm(area_vectors(self.boundary.vertices, self.boundary.facets), axis=1)
 
     def act(self):
-        slid = self.contact.take_slid()
+        slid = self.take_slid()
         if self.reshape:
             self._check_sides()
-        if not slid[WORK].any():
+        if slid is None:
             return
-        self.work_used += float(slid[WORK].sum())
-        areas = np.linalg.norm(area_vectors(self.boundary.vertices, self.boundary.facets), axis=1)
+        areas = self._areas()
         volume = self.work_fraction * self.law.volume(slid, self.hardness, areas)
         self.worn += volume
         if not self.reshape:
@@ -274,12 +275,11 @@ class FacetWear(Engine):
         return float(self.worn.sum())
 
     def state(self):
-        return {"contact_energy_removed": self.contact_energy_removed, "work_used": self.work_used,
-                "receded": self.receded, "worn": self.worn.copy(), "boundary": self.boundary.state()}
+        return {**super().state(), "receded": self.receded, "worn": self.worn.copy(), "boundary": self.boundary.state()}
 
     def restore(self, state):
-        for name in ("contact_energy_removed", "work_used", "receded"):
-            setattr(self, name, float(state[name]))
+        super().restore(state)
+        self.receded = float(state["receded"])
         self.worn = state["worn"].copy()
         self.boundary.restore(state["boundary"])
 

@@ -175,33 +175,67 @@ class ToolContact(Engine):
             setattr(self, name, float(state[name]))
 
 
-class Wear(Engine):
-    """Wear with H(theta) by the laws of M 6.3-6.4 (P 61), and the removal of particles worn away.
+class WearEngine(Engine):
+    """What wear of a tool of particles and of facets has in common.
 
-    contact: the ToolContact that says where and under what force the tool slides; erosion: kernels.erosion.Erosion of
-    the tool; law: of kernels.wear_laws, accelerated; temperature: a function giving (m,) K of the tool particles.
-    `events` counts for each particle how often a contact began to rub it, as far as visits can tell them apart.
+    contact: the ToolContact that says where and under what force the tool slides; law: of kernels.wear_laws, accelerated;
+    count: pieces (particles, facets) of the tool. `events` counts for each piece how often a contact began to rub it, as
+    far as visits can tell them apart; `worn` (count,) is the volume in m3 worn off it, whatever it had to give, `limit`
+    that at which it is gone: what R's rules are judged by.
     """
 
     name = "wear"
 
-    def __init__(self, *, contact, erosion, tool, law, hardness, temperature, on_removal):
+    def __init__(self, *, contact, law, count):
         super().__init__()
-        self.contact, self.erosion, self.tool = contact, erosion, tool
-        self.law, self.hardness, self.temperature = law, hardness, temperature
-        self.on_removal = on_removal
-        self.contact_energy_removed = 0.0
-        self.work_used = 0.0
-        self.events, self.rubbed = np.zeros(tool.count, int), np.zeros(tool.count, bool)
+        self.contact, self.law = contact, law
+        self.contact_energy_removed = self.work_used = 0.0
+        self.events, self.rubbed = np.zeros(count, int), np.zeros(count, bool)
 
-    def act(self):
+    def take_slid(self):
+        """What slid since the last visit, its work and the contacts that have begun counted; None without any."""
         slid = self.contact.take_slid()
         rubbed = slid[WORK] > 0
         self.events += rubbed & ~self.rubbed
         self.rubbed = rubbed
         if not rubbed.any():
-            return
+            return None
         self.work_used += float(slid[WORK].sum())
+        return slid
+
+    def state(self):
+        return {"contact_energy_removed": self.contact_energy_removed, "work_used": self.work_used,
+                "events": self.events.copy(), "rubbed": self.rubbed.copy()}
+
+    def restore(self, state):
+        self.contact_energy_removed, self.work_used = float(state["contact_energy_removed"]), float(state["work_used"])
+        self.events, self.rubbed = state["events"].copy(), state["rubbed"].copy()
+
+
+class Wear(WearEngine):
+    """Wear with H(theta) by the laws of M 6.3-6.4 (P 61), and the removal of particles worn away.
+
+    erosion: kernels.erosion.Erosion of the tool; temperature: a function giving (m,) K of the tool particles.
+    """
+
+    def __init__(self, *, contact, erosion, tool, law, hardness, temperature, on_removal):
+        super().__init__(contact=contact, law=law, count=tool.count)
+        self.erosion, self.tool = erosion, tool
+        self.hardness, self.temperature = hardness, temperature
+        self.on_removal = on_removal
+
+    @property
+    def worn(self):
+        return self.erosion.worn
+
+    @property
+    def limit(self):
+        return self.erosion.volumes
+
+    def act(self):
+        slid = self.take_slid()
+        if slid is None:
+            return
         volume = self.law.volume(slid, self.hardness(self.temperature()), self.erosion.areas)
         removed, uncovered = self.erosion.wear(volume)
         if removed:
@@ -217,12 +251,10 @@ class Wear(Engine):
         self.on_removal(gone)
 
     def state(self):
-        return {"contact_energy_removed": self.contact_energy_removed, "work_used": self.work_used,
-                "events": self.events.copy(), "rubbed": self.rubbed.copy(), **self.erosion.state()}
+        return {**super().state(), **self.erosion.state()}
 
     def restore(self, state):
-        self.contact_energy_removed, self.work_used = float(state["contact_energy_removed"]), float(state["work_used"])
-        self.events, self.rubbed = state["events"].copy(), state["rubbed"].copy()
+        super().restore(state)
         self.erosion.restore(state)
 
     def log(self):
@@ -233,19 +265,19 @@ class Wear(Engine):
 class WearProfile(Engine):
     """Where along the tool's first outline wear happened, span of time by span: what R's rules are judged by.
 
-    erosion: kernels.erosion.Erosion; place: (m,) number of the place that each particle belongs to.
+    wear: a WearEngine; place: (m,) number of the place that each piece of its tool belongs to.
     """
 
     name = "wear_profile"
 
-    def __init__(self, *, erosion, place):
+    def __init__(self, *, wear, place):
         super().__init__()
-        self.erosion, self.place, self.places = erosion, place, int(place.max()) + 1
+        self.wear, self.place, self.places = wear, place, int(place.max()) + 1
         self.increments = []
         self.booked = np.zeros(self.places)
 
     def act(self):
-        now = np.bincount(self.place, self.erosion.worn, self.places)
+        now = np.bincount(self.place, self.wear.worn, self.places)
         self.increments.append(now - self.booked)
         self.booked = now
 

@@ -6,6 +6,9 @@ Both are questions of statistics: how well T seconds sample where the tool wears
 the tool goes.
 """
 import numpy as np
+from scipy.spatial import cKDTree
+
+from .outline import contour
 
 MIN_BLOCKS = 8
 """Fewer blocks of a record tell nothing of its scatter."""
@@ -13,6 +16,12 @@ PLACE = 2e-3
 """Length (m) along a tool's outline that counts as one place where wear may happen."""
 ENOUGH_EVENTS = 10
 """Contact events over which a particle should wear away, so that no single one shapes the tool."""
+
+
+def places(outline, points):
+    """(m,) number of the place, PLACE long, along an outline (k, 2) m that each of the points (m, 2) is nearest to."""
+    along, arc = contour(outline, PLACE / 10)
+    return np.floor((arc[cKDTree(along).query(points)[1]] - arc[0]) / PLACE).astype(int)
 
 
 def distribution_error(increments):

@@ -49,7 +49,7 @@ def sections(run):
         Section("Temperature", "Rise above the coldest start, on a logarithmic scale.", [drawn(temperature)]),
         Section("Wear of the tooth", "Depth worn off each skin particle that is left, and the particles that are gone.",
                 [drawn(wear)]),
-        Section("How far the acceleration can be trusted", trust_line(run), [drawn(trust)]),
+        *trusted(run),
         Section("Shape of the tooth", "Dashed: the new tooth. Worn depth is the distance from the new contour to what "
                 "is left; arc length counts from the lowest point, positive up the front.", [drawn(shape)]),
         books(run)]
@@ -380,11 +380,19 @@ def worn_outlines(run, shown):
     return figure
 
 
+def trusted(run):
+    """The section on how far the acceleration can be trusted, in a list; empty where nothing has judged it."""
+    if not math.isfinite(run.result("wear_distribution_error")):
+        return []
+    return [Section("How far the acceleration can be trusted", trust_line(run), [save(run, "trust", trust(run))])]
+
+
 def trust_line(run):
     """What R's rules say of this run."""
+    piece = "a layer as deep as its facet" if "tool_facets" in run.model else "a particle"
     return (f"Wear is accelerated {quantity(run.parameter('acceleration', 0.0), '-')} times. Sampled in "
             f"{quantity(run.result('simulated_time'), 's')}, its distribution along the tool is known to "
-            f"{percent(run.result('wear_distribution_error'), 1.0)}, and a particle goes in "
+            f"{percent(run.result('wear_distribution_error'), 1.0)}, and {piece} goes in "
             f"{number(run.result('contact_events_per_particle'))} contact events. For an error of "
             f"{percent(run.parameter('wear_tolerance', math.nan), 1.0)} and {wear_statistics.ENOUGH_EVENTS} events, "
             f"accelerate at most {number(run.result('trusted_acceleration'))} times, and run as much longer.")
@@ -410,7 +418,7 @@ def trust(run):
     factors = factor * np.geomspace(1e-3, 10, 60)
     against.loglog(factors, 100 * error * np.sqrt(factors / factor), color="#2c6e91", label="error of the distribution / %")
     against.loglog(factors, run.result("contact_events_per_particle") * factor / factors, color="#b5651d",
-                   label="contact events a particle")
+                   label="contact events till a piece is gone")
     against.axhline(100 * run.parameter("wear_tolerance", math.nan), color="#2c6e91", linestyle=":")
     against.axhline(wear_statistics.ENOUGH_EVENTS, color="#b5651d", linestyle=":")
     trusted = run.result("trusted_acceleration")

@@ -4,7 +4,7 @@ from matplotlib import colormaps
 
 from ..kernels.outline import contour
 from . import shapes
-from .cutting import CRACK, cut, draw_cracks, draw_energy, draw_forces, moving_picture, stage_of, summary_line
+from .cutting import CRACK, cut, draw_cracks, draw_energy, draw_forces, moving_picture, stage_of, summary_line, trusted
 from .page import Section, machine_tiles, percent, quantity, tiles
 from .plots import MM, MS, books, canvas, frame, mark_stages, save, spread, stage_name
 
@@ -27,6 +27,7 @@ def sections(run):
         Section("Wear along the tool", "Share of all wear that fell on each segment, per millimetre of the new outline: "
                 "zero at the lowest point, positive up the front; a tall single segment is one contact that slid under "
                 "load. Right: the same as a band on the tool.", [drawn(wear)]),
+        *trusted(run),
         *([Section("Shape of the tool", "Dashed: the new tool. Each point is a vertex.", [drawn(shape)])]
           if run.parameter("reshape", False) else []),
         Section("History", "Thin lines are the record, thick ones a running mean.", [drawn(history)]),

@@ -8,7 +8,7 @@ from matplotlib.collections import PolyCollection
 from matplotlib.colors import LinearSegmentedColormap, Normalize, to_rgb
 
 from . import shapes
-from .cutting import CRACK, DAMAGE, LOOSE, PALE, STEEL, SUPPORT
+from .cutting import CRACK, DAMAGE, LOOSE, PALE, STEEL, SUPPORT, trusted
 from .page import Section, machine_tiles, number, percent, quantity, tiles
 from .plots import MM, books, canvas, running_mean, save, spread
 
@@ -43,6 +43,7 @@ def sections(run):
                 [drawn(wear), drawn(wear_over_height)]),
         Section("Shape of the tooth at stages, and the particles removed", "Red: removed particles, where they were.",
                 [drawn(stages_of_wear)]),
+        *trusted(run),
         books(run)]
 
 

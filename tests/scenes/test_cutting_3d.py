@@ -5,6 +5,8 @@ import signal
 import numpy as np
 import pytest
 
+from rockwear.report.folder import read_history
+
 from .conftest import (ROOT, arguments, assert_as_if_never_stopped, finish, history, interrupt_script, run_script,
                        start)
 
@@ -59,6 +61,14 @@ def test_worn_volume_is_archards_and_none_goes(worn):
     # Depth is volume over the square of a sphere.
     radii = np.load(worn.out / "model.npz")["tool_radii"]
     assert (shot["worn_depth"] * (2 * radii)**2).sum() == pytest.approx(value(worn, "worn_volume"), rel=1e-9)
+
+
+def test_wear_in_space_is_judged_by_the_rules_of_acceleration(worn):
+    columns, units = read_history(worn.out / "wear_profile.csv")
+    assert set(units.values()) == {"m3"}
+    assert np.sum(list(columns.values())) == pytest.approx(value(worn, "worn_volume"), rel=1e-9)
+    assert 0 < value(worn, "wear_distribution_error") and value(worn, "trusted_acceleration") > 0
+    assert (worn.out / "figures/trust.png").exists()
 
 
 def test_no_wear_without_contact_and_none_above_the_cut(worn):

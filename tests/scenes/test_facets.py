@@ -6,11 +6,14 @@ from functools import lru_cache
 import numpy as np
 import pytest
 
+from rockwear.kernels.wear_statistics import places
+from rockwear.report.folder import read_history
+
 from .conftest import ROOT, SMALL, arguments, interrupt_script, run_script
 
 SEGMENTS = ROOT / "yade_scripts/cutting_segments.py"
 SHORT = {**SMALL, "velocity": 4.0, "start_up": 8e-4, "cycles": 1, "cycle_time": 2e-4, "reshape": "true", "hardness": 0,
-         "wear_coefficient": 0.01128, "acceleration": 3e4}
+         "wear_coefficient": 0.01128, "acceleration": 3e4, "wear_period": 50}
 
 
 @lru_cache
@@ -76,6 +79,22 @@ def test_the_segments_cut_wear_and_close_their_books(worn):
     # At 30,000 times the face recedes faster than rock slides on it, and the run says so.
     assert result(worn, "recession_per_slip") > 1
     assert any("Accelerate at most" in line for line in worn.summary["warnings"])
+
+
+def test_segments_are_judged_by_the_rules_of_acceleration(worn):
+    """R's rules, from the record along the outline; a layer as deep as its facet is gone within one contact here."""
+    with open(worn.out / "wear_profile.csv", encoding="utf-8") as file:
+        assert "place_0 [m3/m]" in file.readline()
+    columns, _ = read_history(worn.out / "wear_profile.csv")
+    by_place = np.sum(list(columns.values()), axis=1)
+    assert by_place.sum() == pytest.approx(result(worn, "worn_volume"), rel=1e-12)
+    model = np.load(worn.out / "model.npz")
+    middle = model["tool_vertices"][model["tool_facets"]].mean(axis=1)
+    worn_volume = np.load(sorted((worn.out / "snapshots").glob("*.npz"))[-1])["worn_volume"]
+    assert by_place == pytest.approx(np.bincount(places(model["outline"], middle), worn_volume, len(by_place)), rel=1e-12)
+    assert 0 < result(worn, "trusted_acceleration") < 0.1 * 3e4
+    assert any("a layer as deep as its facet goes in" in line for line in worn.summary["warnings"])
+    assert (worn.out / "figures/trust.png").exists()
 
 
 def test_a_half_of_the_work_wears_half(worn, tmp_path):
