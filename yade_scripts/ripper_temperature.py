@@ -2,12 +2,12 @@
 
     yade -n -x yade_scripts/ripper_temperature.py [--name value ...] [--out DIR] [--resume]
 
-After a start-up, a pass at each speed from room temperature: the transients. The mean load of each pass then heats the
-tool alone: a minute of it, and the quasi-stationary fields with the root at 20 C and with an insulated root. From
-either field at 0.4 m/s a last pass with wear, 7000 times accelerated.
+The start-up leads the tool to the rock. Then a pass at each speed from room temperature, its first 20 mm in the rock: the
+transients. The mean load of each pass heats the tool alone: a minute of it, and the quasi-stationary fields with the root
+at 20 C and with an insulated root. From either field at 0.4 m/s a last pass with wear, 7000 times accelerated.
 
 The mechanics always run at --velocity, 4 m/s, while heat has the time of the process (see rockwear/temperatures.py);
---velocity 0.4 --start_up 0.05 --cycle_time 0.04 runs them ten times slower and takes ten times as long. M shares
+--velocity 0.4 --start_up 0.001 --cycle_time 0.05 runs them ten times slower and takes ten times as long. M shares
 friction heat equally. M shows the tooth in figures only: its shape and the depth of cut are ours, as in ripper.py.
 """
 import os
@@ -21,6 +21,6 @@ from rockwear.temperatures import Temperatures, temperature_parameters  # noqa: 
 RIPPER = temperature_parameters(
     kn=90e9, kt=90e9, tool_kn=20e9, tool_kt=20e9, tool_radius_max=0.6e-3, heat_sharing="equal",
     rake=25.0, clearance=12.0, tooth_height=0.085, tooth_width=0.06, tip_radius=5e-3, depth_of_cut=0.015,
-    start_up=0.005, cycle_time=0.004)
+    start_up=1e-4, cycle_time=0.005)
 
 run.main("ripper_temperature", RIPPER, Temperatures)
