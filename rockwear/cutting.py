@@ -143,6 +143,7 @@ class Cutting(scene.Scene):
 
     looking = {*scene.Scene.looking, "tool_contact"}
     loose_rock, put_loop = FrictMat, staticmethod(scene.put_loop)
+    ratcheting_free = True
     piece, volume_unit = "a particle", "m3/m"
     """What of the tool wears away in one, and the unit of its volume."""
 
@@ -274,7 +275,8 @@ class Cutting(scene.Scene):
         scene.put_rock_materials(mu=v.mu, loose=self.loose_rock)
         scene.put_steel(mu=v.tool_mu, contact_damping=v.contact_damping)
         scene.put_rock(rock)
-        self.put_loop(kn=v.kn, kt=v.kt, mu=v.mu, tool=(v.tool_kn, v.tool_kt, v.tool_mu))
+        self.put_loop(kn=v.kn, kt=v.kt, mu=v.mu, tool=(v.tool_kn, v.tool_kt, v.tool_mu),
+                      ratcheting_free=self.ratcheting_free)
         self._make_engines()
         scene.make_bonds(rock, self.bonds)
         self._put_tool()

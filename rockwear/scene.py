@@ -56,10 +56,12 @@ def put_rock(rock):
         O.bodies.append(body)
 
 
-def put_loop(*, kn, kt, mu, tool=None, damping=0.0):
+def put_loop(*, kn, kt, mu, tool=None, damping=0.0, ratcheting_free=True):
     """YADE's own loop: bonds, rock on rock, tool on rock (M 4.5), explicit integration.
 
-    tool: (kn, kt, mu) of its contacts, None without a tool; damping: non-viscous (Cundall's), a fraction of each force.
+    tool: (kn, kt, mu) of its contacts, None without a tool; damping: non-viscous (Cundall's), a fraction of each force;
+    ratcheting_free: shear between spheres by their full radii, YADE's way, which does not see where they really touch
+    (kernels.stability); false: as the points of contact move, so that the springs give back what they took.
     """
     parameters = [Ip2_FrictMat_FrictMat_FrictPhys(kn=exactly(kn), ks=exactly(kt), frictAngle=exactly(math.atan(mu)))]
     laws = [Law2_ScGeom_FrictPhys_CundallStrack()]
@@ -68,10 +70,11 @@ def put_loop(*, kn, kt, mu, tool=None, damping=0.0):
         parameters.append(Ip2_FrictMat_FrictViscoMat_FrictViscoPhys(
             kn=exactly(tool_kn), kRatio=exactly(tool_kt / tool_kn), frictAngle=exactly(math.atan(tool_mu))))
         laws.append(Law2_ScGeom_FrictViscoPhys_CundallStrackVisco(traceEnergy=True))
-    _put_engines([Bo1_Sphere_Aabb()], [Ig2_Sphere_Sphere_ScGeom()], parameters, laws, damping)
+    geometry = [Ig2_Sphere_Sphere_ScGeom(avoidGranularRatcheting=ratcheting_free)]
+    _put_engines([Bo1_Sphere_Aabb()], geometry, parameters, laws, damping)
 
 
-def put_loop_with_facets(*, kn, kt, mu, tool, damping=0.0):
+def put_loop_with_facets(*, kn, kt, mu, tool, damping=0.0, ratcheting_free=True):
     """The same beside a tool of facets.
 
     YADE puts a facet first into its contacts, and has no functor for (steel, rock) in this order. Steel and loose rock
@@ -87,8 +90,9 @@ def put_loop_with_facets(*, kn, kt, mu, tool, damping=0.0):
     parameters = [Ip2_FrictViscoMat_FrictViscoMat_FrictViscoPhys(
         kn=by_pair(kn, tool_kn), kRatio=by_pair(kt / kn, tool_kt / tool_kn),
         frictAngle=by_pair(math.atan(mu), math.atan(tool_mu)))]
-    _put_engines([Bo1_Sphere_Aabb(), Bo1_Facet_Aabb()], [Ig2_Sphere_Sphere_ScGeom(), Ig2_Facet_Sphere_ScGeom()],
-                 parameters, [Law2_ScGeom_FrictViscoPhys_CundallStrackVisco(traceEnergy=True)], damping)
+    geometry = [Ig2_Sphere_Sphere_ScGeom(avoidGranularRatcheting=ratcheting_free), Ig2_Facet_Sphere_ScGeom()]
+    _put_engines([Bo1_Sphere_Aabb(), Bo1_Facet_Aabb()], geometry, parameters,
+                 [Law2_ScGeom_FrictViscoPhys_CundallStrackVisco(traceEnergy=True)], damping)
 
 
 def _put_engines(bounds, geometry, parameters, laws, damping):

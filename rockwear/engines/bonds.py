@@ -172,12 +172,15 @@ class Bonds(Engine):
     exact in 2D; in 3D its error grows with the cube of the angle, and is below 1e-6 of the strength where Rt/kt is 5
     thousandths of a radius. Spheres that have rolled far on each other do not come back as they were: from ROLLED on
     only the direction is taken from the normals, and the length from the strain energy that YADE's law kept of the step
-    before.
+    before. The same holds throughout where shear is that of the points of contact (not ratcheting_free, see
+    scene.put_loop), which normals do not tell.
     """
 
     name = "bonds"
-    def __init__(self, *, pairs, law, strength_factor=None, clock):
+
+    def __init__(self, *, pairs, law, strength_factor=None, clock, ratcheting_free=True):
         super().__init__()
+        self.ratcheting_free = ratcheting_free
         self.pairs = np.asarray(pairs)
         self.bodies = np.unique(self.pairs).tolist()
         self.law = law
@@ -287,7 +290,8 @@ class Bonds(Engine):
         carried.Fn = phys.kn * (carried.un - bond.un_plastic)
         softening = bond.softening
         ut = self._shear_displacement(n, geom, first, second)
-        if self.normals[n, :, 2].any() and ut.norm() > ROLLED * sum(carried.radii):
+        far = self.normals[n, :, 2].any() and ut.norm() > ROLLED * sum(carried.radii)
+        if far or not self.ratcheting_free:
             ut = _as_long_as_held(ut, carried)
         spent = carried.advance(ut, O.forces)
         if bond.softening == softening:

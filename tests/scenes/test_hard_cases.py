@@ -60,3 +60,13 @@ def test_discs_that_have_rolled_on_each_other_for_three_turns_break_with_the_ene
     # Where it softens with H = kn / 2, three times the strain energy at the strength.
     for law, energy in (("brittle", 1), ("damage", 3), ("plastic", 3)):
         assert checks["rolled"][law] == pytest.approx([energy], rel=0.02)
+
+
+def test_springs_sheared_as_contacts_move_gain_no_energy(checks):
+    """By full radii, YADE's way, pressed springs are stiffer in shear than they give back."""
+    squeezed = checks["squeezed"]
+    assert min(deepest for deepest, _ in squeezed.values()) > 0.2
+    assert squeezed["by full radii"][1] > 0.02
+    # What is left is of the first order in the step.
+    kept, finer = squeezed["as contacts move"][1], squeezed["as contacts move, half the step"][1]
+    assert abs(kept) < 0.003 and abs(finer) < 0.7 * abs(kept)

@@ -203,6 +203,30 @@ def rolled(law):
     return [crack.energy / (0.5 * law.Rn**2 / law.kn) for crack in bonds.cracks]
 
 
+def squeezed(ratcheting_free, finer=1):
+    """Unbreakable bonds that are pressed and sheared by a quarter of a disc, and swing on without damping.
+    -> (largest overlap over the diameter, energy gained over that put in)."""
+    law = ElasticBrittle(Rn=1e12, Rt=1e12, **SPRING)
+    O.reset()
+    rock = lattice()
+    scene.put_rock_materials(mu=law.mu)
+    scene.put_rock(rock)
+    scene.put_loop(kn=law.kn, kt=law.kt, mu=law.mu, ratcheting_free=ratcheting_free)
+    bonds = Bonds(pairs=rock.pairs, law=law, clock=lambda: O.time, ratcheting_free=ratcheting_free)
+    scene.make_bonds(rock, bonds)
+    for i, (x, y) in enumerate((rock.positions - rock.positions.mean(axis=0)) @ np.array([[-1.2e5, 4e4], [-8e4, 6e4]])):
+        O.bodies[i].state.vel = (x, y, 0.0)
+    O.dt = 0.1 * TIME_STEP / finer
+    engines.enlist([bonds])
+    O.engines = O.engines[:-1] + engines.runners({"bonds": 1}) + O.engines[-1:]
+    bonds.connect()
+    put_in, deepest = utils.kineticEnergy(), 0.0
+    for _ in range(100):
+        run(200 * finer)
+        deepest = max(deepest, max(i.geom.penetrationDepth for i in O.interactions) / (2 * RADIUS))
+    return deepest, (utils.kineticEnergy() + bonds.elastic_energy()) / put_in - 1
+
+
 THREE = ["brittle", "damage", "plastic"]
 checks = {
     "torn in one step": {name: torn(law, TEAR, 3e4, 10) for name, law in LAWS.items()},
@@ -212,6 +236,8 @@ checks = {
     "crushed in finer steps": {name: torn(LAWS[name], CRUSH, RATE, 100, finer=8) for name in THREE},
     "erased": {name: erased(LAWS[name]) for name in THREE},
     "cycled": {name: cycled(law) for name, law in LAWS.items()},
+    "squeezed": {"by full radii": squeezed(True), "as contacts move": squeezed(False),
+                 "as contacts move, half the step": squeezed(False, 2)},
     "rolled": {name: rolled(LAWS[name]) for name in THREE},
     "cycled without new normals": cycled_without_new_normals(),
 }
