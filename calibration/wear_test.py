@@ -165,7 +165,7 @@ class WearTest(scene.Scene):
         super()._connect()
         self.bodies.connect()
 
-    def _on_removal(self, indices):
+    def _on_removal(self, worn, loose):
         if not self.bodies.body_of:
             raise RunEnded(f"the block is worn away after {self.slid:g} m", True)
         self.press.act()

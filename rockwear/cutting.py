@@ -336,7 +336,7 @@ class Cutting(scene.Scene):
                     tool_paths=paths(v.bond_conductance, v.tool_conductivity, pairs=tool.erosion.pairs,
                                      cells=lambda: tool.cells, fitted=lambda: tool.conductance),
                     conduction=v.conduction, root_temperature=v.root_temperature if v.root == "fixed" else None,
-                    surface_period=v.surface_period, speed_up=lambda: self.speed_up)
+                    surface_period=v.surface_period, acceleration=v.acceleration, speed_up=lambda: self.speed_up)
 
     def _expansion(self):
         return Expansion(coefficient=self.v.rock_expansion, rock=self.rock, reference=self.v.rock_temperature,
@@ -368,9 +368,9 @@ class Cutting(scene.Scene):
     def _tool_temperature(self):
         return self.heat.tool_temperature() if self.heat else np.full(self.tool.count, self.v.tool_temperature)
 
-    def _on_removal(self, indices):
+    def _on_removal(self, worn, loose):
         if self.heat:
-            self.heat.remove(indices)
+            self.heat.remove(worn, loose)
         if not self.bodies.body_of:
             # A simulation that blows up may wear the tool away before its watch comes by.
             self.watch.act()

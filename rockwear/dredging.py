@@ -190,11 +190,14 @@ class Dredging(Cutting):
         if self.heat:
             self.recorder.sources.append(self._heat_log)
 
-    def _on_removal(self, indices):
+    def _on_removal(self, worn, loose):
         if self.heat:
-            network, gone = self.heat.network, self.rock.count + np.asarray(indices, int)
-            self.worn_heat += float(network.capacity[gone] @ (network.temperature[gone] - self.v.tool_temperature))
-        super()._on_removal(indices)
+            network = self.heat.network
+            capacity, before = network.capacity, network.balance["removed"]
+        super()._on_removal(worn, loose)
+        if self.heat:
+            lost = float((capacity - network.capacity).sum())
+            self.worn_heat += before - network.balance["removed"] - lost * self.v.tool_temperature
 
     # ---- what a checkpoint holds
 
@@ -213,7 +216,7 @@ class Dredging(Cutting):
         return {"tool_temperature_hot": (hot, "K"), "tool_temperature_mean": (mean, "K"),
                 "water_heat": (-self.heat.network.balance["convected"], "J/m"),
                 "pick_friction_heat": (float(self.heat.averaged["friction_heat"].sum()), "J/m"),
-                "pick_heat_worn_away": (self.worn_heat + self.heat.carried_away, "J/m")}
+                "pick_heat_worn_away": (self.worn_heat, "J/m")}
 
     def _hot_and_mean(self, network):
         """Mean temperatures (K) of the hottest part of the tool's mass, and of all of it."""

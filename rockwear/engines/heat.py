@@ -4,6 +4,7 @@ import math
 import numpy as np
 
 from ..kernels.cells import among, conducting
+from ..kernels.receding import neighbours, receded
 from ..kernels.surface import free_surface
 from . import Engine
 
@@ -42,6 +43,8 @@ class Heat(Engine):
     the tool; tool_share: part of the heat of tool-rock friction that the tool takes; rock_paths,
     tool_paths: the pairs (m, 2) of particles that exchange heat within rock and tool, and their conductances (m,) W/K;
     conduction: False leaves all heat where it arises;
+    acceleration: of the wear; a particle that it wears away takes 1 / acceleration of its heat along, the rest stays with
+    those under it (kernels.receding);
     root_temperature: K at which the shank holds the tool's mounted particles, None where they are insulated;
     speed_up: a function giving the seconds of the process in a second of the mechanics (M 12.1), in which heat flows.
     """
@@ -50,16 +53,17 @@ class Heat(Engine):
 
     def __init__(self, *, network, bonds, rock_friction, tool_contact, rock, tool, heat_fraction, tool_share,
                  contact_conductance, convection, ambient, rock_paths, tool_paths, surface_period,
-                 conduction=True, root_temperature=None, speed_up=lambda: 1.0):
+                 acceleration=1.0, conduction=True, root_temperature=None, speed_up=lambda: 1.0):
         super().__init__()
         self.network, self.bonds, self.rock_friction, self.tool_contact = network, bonds, rock_friction, tool_contact
         self.rock, self.tool, self.n = rock, tool, rock.count
         self.heat_fraction, self.tool_share, self.conduction = heat_fraction, tool_share, conduction
         self.contact_conductance, self.convection, self.ambient = contact_conductance, convection, ambient
         self.rock_paths, self.tool_paths = rock_paths, tool_paths
+        self.under, self.handed = neighbours(tool_paths[0], tool.count), 1 - 1 / max(acceleration, 1.0)
         self.facing = ~among(rock_paths[0], bonds.pairs, self.n)
         self.surface_period, self.root_temperature, self.speed_up = surface_period, root_temperature, speed_up
-        self.carried_away = self.replaced = self.renewed = 0.0
+        self.replaced = self.renewed = 0.0
         self.surface_time = -math.inf
         self.clock = 0.0
         self.exchanged_with = {}
@@ -70,12 +74,7 @@ class Heat(Engine):
         elapsed = self.elapsed() * self.speed_up()
         self.clock += elapsed
         self.averaged["seconds"] += elapsed
-        heat = self._sources()
-        gone = ~self.network.present
-        # Heat meant for a particle that has gone since goes with it.
-        self.carried_away += float(heat[gone].sum())
-        heat[gone] = 0.0
-        self.network.add_heat(heat)
+        self.network.add_heat(self._sources())
         if self.conduction:
             self.network.advance(elapsed)
             if self.clock - self.surface_time >= self.surface_period:
@@ -94,6 +93,7 @@ class Heat(Engine):
             self.network.advance(seconds)
 
     def _sources(self):
+        """(n + m,) J that friction and the exchange between tool and rock bring since the last call."""
         tool_work, rock_work, touching = self.tool_contact.take_heating()
         rock = (1 - self.tool_share) * rock_work + self.rock_friction.take_work()
         heat = self.heat_fraction * np.concatenate([rock, self.tool_share * tool_work])
@@ -155,9 +155,15 @@ class Heat(Engine):
         present = np.flatnonzero(self.network.present)
         self.network.convect(present, self.convection * exposed[present], self.ambient)
 
-    def remove(self, indices):
-        """Tool particles `indices` are gone, with the heat they hold."""
-        self.network.remove(np.asarray(indices) + self.n)
+    def remove(self, worn, loose=()):
+        """Tool particles are gone: `worn` ones have left the heat of accelerated wear behind, `loose` ones take theirs."""
+        # The heat of their last friction comes first.
+        self.network.add_heat(self._sources())
+        network, there = self.network, self.network.temperature[self.n:]
+        kept = receded(temperature=there, capacity=network.capacity[self.n:], adjacent=self.under, leaving=worn,
+                       share=self.handed)
+        network.add_heat(network.capacity * np.concatenate([np.zeros(self.n), kept - there]))
+        network.remove(self.n + np.array([*worn, *loose], int))
 
     def replace_rock(self, temperature):
         """New rock at the start of a cycle: its particles take these (n,) K, and the difference is booked apart."""
@@ -199,8 +205,7 @@ class Heat(Engine):
     def balance(self):
         """The heat book in J, signed as it changes what rock and tool hold; residual is what it fails to explain."""
         book = self.network.balance
-        book["generated"] += self.carried_away - self.replaced
-        book["removed"] -= self.carried_away
+        book["generated"] -= self.replaced
         book["rock_replaced"] = self.replaced
         book["tool_renewed"] = self.renewed
         book["stored"] = self.network.heat_content - self.initial_content
@@ -216,14 +221,14 @@ class Heat(Engine):
 
     def state(self):
         network = self.network.state()
-        return {"network": network, "carried_away": self.carried_away, "replaced": self.replaced, "clock": self.clock,
+        return {"network": network, "replaced": self.replaced, "clock": self.clock,
                 "surface_time": self.surface_time, "initial_content": self.initial_content, "renewed": self.renewed,
                 "averaged": {name: np.copy(value) for name, value in self.averaged.items()},
                 "touched": np.array(sorted(self.exchanged_with), int).reshape(-1, 2)}
 
     def restore(self, state):
         self.network.restore(state["network"])
-        for name in ("carried_away", "replaced", "renewed", "clock", "surface_time", "initial_content"):
+        for name in ("replaced", "renewed", "clock", "surface_time", "initial_content"):
             setattr(self, name, float(state[name]))
         self.averaged = {name: np.copy(value) for name, value in state["averaged"].items()}
         self.exchanged_with = {(int(i), int(j)): 0.0 for i, j in state["touched"].tolist()}

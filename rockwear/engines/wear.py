@@ -248,7 +248,7 @@ class Wear(WearEngine):
         self.contact_energy_removed += self.tool.erase(gone)
         self.contact.forget_erased()
         self.tool.add([i for i in uncovered if self.erosion.alive[i]])
-        self.on_removal(gone)
+        self.on_removal(removed, loose)
 
     def state(self):
         return {**super().state(), **self.erosion.state()}
