@@ -232,8 +232,7 @@ class Dredging(Cutting):
         Each tool particle takes the mean power of its friction, and exchanges heat with the water and, by the mean
         conductance, with the rock that it touched; then it cools. peak, cooled: K of the hottest part at the end of
         cutting and of cooling; mean: K of the whole then; absorbed, released: J/m of friction and to water and rock,
-        which become equal in the stationary state (P 5.3). No heat goes with worn particles here: accelerated wear
-        takes away so many times too much of it.
+        which become equal in the stationary state (P 5.3). No heat goes with worn particles here.
         """
         state = self.heat.network.state()
         # Rock that has cooled down keeps out of the book.

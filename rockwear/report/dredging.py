@@ -101,16 +101,16 @@ def levelling(run):
 
 
 def turns_words(run):
-    """What the temperature over the turns shows, and why measured peaks may not rise."""
+    """What the temperature over the turns shows, why measured peaks may not rise, and what worn particles took."""
     made, lost = (run.column(name)[-1:] for name in ("pick_friction_heat", "pick_heat_worn_away"))
     words = ("Shaded: cutting. Below, the mean friction heat of these cuts is repeated from the cold on the pick as it is "
              "worn now, without further wear: peaks rise until the water takes a turn's heat in the same turn. Crosses "
              "are the peaks above. Cuts break the rock each in its own way, and their heat differs: rings are the "
              "same peaks for equal heat, the rise of each cut scaled to the mean heat of all.")
     if len(made) and made[0] > 0 and lost[0] > 0:
-        words += (f" Worn particles took {100 * lost[0] / made[0]:.0f} % of the pick's friction heat away with them, and its "
-                  f"peaks lie lower for it; wear is accelerated {quantity(run.parameter('acceleration', math.nan), '-')} "
-                  "times, and real wear takes that much less. With acceleration 0 nothing is lost (M 12.1.2).")
+        words += (f" Wear is accelerated {quantity(run.parameter('acceleration', math.nan), '-')} times. Worn particles took "
+                  f"{100 * lost[0] / made[0]:.2g} % of the pick's friction heat with them; what else they held stayed with "
+                  "those under them, so that the field recedes with the surface, as it does under real wear.")
     return words
 
 

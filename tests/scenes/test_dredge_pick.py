@@ -70,13 +70,13 @@ def test_books_close_with_the_heat_of_the_water(turns):
     assert abs(audits["energy"]["residual"]) < 0.03 * audits["energy"]["tool_work"]
 
 
-def test_heat_of_the_pick_is_its_share_of_friction_and_some_goes_with_worn_particles(turns):
+def test_heat_of_the_pick_is_its_share_of_friction_and_little_goes_with_worn_particles(turns):
     columns = history(turns.out)
     share = np.sqrt(60 * 7830 * 450)
     share /= share + np.sqrt(5 * 2500 * 1970)
     made, lost = (columns[f"pick_{name} [J/m]"] for name in ("friction_heat", "heat_worn_away"))
     assert made[-1] == pytest.approx(0.85 * share * columns["tool_friction [J/m]"][-1], rel=1e-6)
-    assert np.all(np.diff(lost) >= 0) and 0 < lost[-1] < made[-1]
+    assert 0 < lost[-1] < 0.02 * made[-1]
 
 
 def test_each_cut_is_into_fresh_rock(turns):
