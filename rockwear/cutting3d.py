@@ -202,8 +202,8 @@ class Cutting3D(Cutting):
     def _periods(self):
         v = self.v
         return {"bonds": 1, "tool_contact": v.sampling_period, "rock_friction": v.rock_sampling_period,
-                "wear": v.wear_period, "wear_profile": cutting.PROFILE_PERIOD * v.wear_period, "letting_go": 200, "background_damping": v.damping_period, "watch": 200,
-                "recorder": max(1, self._steps(v.record_period))}
+                "wear": v.wear_period, "wear_profile": cutting.PROFILE_PERIOD * v.wear_period, "letting_go": 200,
+                "background_damping": v.damping_period, "watch": 200, "recorder": max(1, self._steps(v.record_period))}
 
     # ---- stages
 

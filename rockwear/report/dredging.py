@@ -323,7 +323,7 @@ def turns(run):
         axes.plot(turn, cooled - 273.15, "s-", color="#2c6e91", markersize=4, label="hottest 1 % after cooling")
         axes.plot(turn, mean - 273.15, "-", color="#444444", label="mean of the pick after cooling")
         axes.set(xlabel="turn, each with the mean heating of the cuts above", ylabel="°C", xlim=(0, turn.max() + 1))
-        axes.legend(loc="best")
+        axes.legend(loc="center right", bbox_to_anchor=(1.0, 0.62))
     return figure
 
 

@@ -90,7 +90,7 @@ def tip_over_time(run):
     axes.set(xscale="log", yscale="log", xlabel="time of the process / s", ylabel="rise of the hottest particle / K")
     low, high = axes.get_ylim()
     axes.set_ylim(max(low, 1e-6 * high), high)
-    axes.legend(loc="lower right")
+    axes.legend(loc="upper left", bbox_to_anchor=(0.02, 0.86))
     return figure
 
 
