@@ -70,3 +70,8 @@ def test_springs_sheared_as_contacts_move_gain_no_energy(checks):
     # What is left is of the first order in the step.
     kept, finer = squeezed["as contacts move"][1], squeezed["as contacts move, half the step"][1]
     assert abs(kept) < 0.003 and abs(finer) < 0.7 * abs(kept)
+
+
+def test_soft_bonds_sheared_as_contacts_move_break_with_their_energy(checks):
+    for broken, residual in checks["soft"]:
+        assert broken > 0.8 and abs(residual) < 3e-4
