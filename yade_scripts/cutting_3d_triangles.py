@@ -3,9 +3,9 @@
     yade -n -x yade_scripts/cutting_3d_triangles.py [--full] [--name value ...] [--out DIR] [--resume]
 
 Numbers are M's: kn = kt = 1e6 N/m, Rn = 500 N, Rt = 5000 N, mu = 0.5, 0.1 against the tooth, 0.04 m/s, no wear. M shows
-block, tooth and depth of cut in a figure only, and gives no density: they are ours. M's spheres of 9 mm come with --full
-(11,720 of them, M has 11,700); the defaults coarsen them 1.5 times. Models II and III: cutting_3d_wear.py,
-cutting_3d_removal.py.
+block, tooth and depth of cut in a figure only, and gives no density and no length: they are ours, 60 mm of cut. M's spheres
+of 9 mm come with --full (11,720 of them, M has 11,700); the defaults coarsen them 1.5 times. Models II and III:
+cutting_3d_wear.py, cutting_3d_removal.py.
 """
 import os
 import sys
@@ -15,4 +15,4 @@ sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(sys.argv[0]))
 from rockwear import run  # noqa: E402
 from rockwear.cutting3d import OF_TRIANGLES, TriangleCutting3D, parameters  # noqa: E402
 
-run.main("cutting_3d_triangles", parameters(*OF_TRIANGLES), TriangleCutting3D)
+run.main("cutting_3d_triangles", parameters(*OF_TRIANGLES, lowering_velocity=0.4, cut_time=1.5), TriangleCutting3D)
