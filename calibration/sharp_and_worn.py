@@ -28,7 +28,8 @@ ROCK_OF_THE_CUT = ("velocity depth_of_cut kn kt Rn Rt mu tool_kn tool_kt tool_mu
                    "tool_radius_max").split()
 STRENGTH = {"compressive_strength": 164e6, "tensile_strength": 30.4e6}
 """Of M's rock in our laboratory (calibration/results/uniaxial.md)."""
-QUANTITIES = {"mean_cutting_force": ("mean cutting force", "N/m"), "mean_thrust_force": ("mean thrust force", "N/m"),
+QUANTITIES = {"mean_cutting_force": ("mean cutting force", "N/m"), "peak_cutting_force": ("peak cutting force", "N/m"),
+              "mean_thrust_force": ("mean thrust force", "N/m"),
               "specific_energy": ("specific energy", "J/m3"), "chip_size": ("median chip, by mass", "m")}
 
 
@@ -107,13 +108,15 @@ def figure(teeth, rows):
         axes.plot(lost, values, "o", color="#c8a15a", markersize=4, label="one packing")
         middle = [np.nanmean(values[lost == x]) for x in np.unique(lost)]
         axes.plot(np.unique(lost), middle, color="#444444", label="mean")
-        if name == "mean_cutting_force":
+        highest = np.nanmax(values)
+        if name == "peak_cutting_force":
+            # The theories are of the force at which a chip breaks off.
             for theory_name, style in (("Evans", ":"), ("Nishimatsu", "--")):
                 axes.plot([100 * tooth["lost"] for tooth in teeth], [factor * tooth[theory_name] for tooth in teeth], style,
                           color="#2c6e91", label=theory_name)
             axes.legend(fontsize=8)
-        axes.set(title=label, xlabel="mass lost / %", ylabel=shown, ylim=(0, None))
-    panels[-1].set_visible(False)
+            highest *= 1.6
+        axes.set(title=label, xlabel="mass lost / %", ylabel=shown, ylim=(0, 1.1 * highest))
     return drawn
 
 
@@ -160,8 +163,9 @@ def write_page(folder, teeth, rows):
     header = ("tooth", "effective rake", *(label for label, _ in QUANTITIES.values()), "Evans", "Nishimatsu")
     (folder / "report.html").write_text(page.document("sharp and worn", f"{len(rows)} cuts", [page.Section(
         "What wear does to the cut", "The same specimens cut at the same depth by the tooth as it was new and as it wore; "
-        "± is the scatter of packings. The theories take the rake of the line from the tip to where the front leaves the "
-        "rock, and the laboratory's strengths.", [page.image(path), page.table(table, header)])]), encoding="utf-8")
+        "± is the scatter of packings. The theories are of the force at which a chip breaks off, beside the peak, and take the "
+        "rake of the line from the lowest point to where the front leaves the rock, and the laboratory's strengths; beyond "
+        "the frame they leave what they were made for.", [page.image(path), page.table(table, header)])]), encoding="utf-8")
 
 
 if __name__ == "__main__":

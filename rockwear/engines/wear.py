@@ -1,6 +1,6 @@
 """What the tool meets: forces, friction work and Archard wear of its skin, and the removal of its particles."""
 import numpy as np
-from yade import InsertionSortCollider, O, Vector3
+from yade import InsertionSortCollider, O, Sphere, Vector3
 
 from ..kernels.wear_laws import NORMAL, WORK
 from . import SLIDING, Engine, contact_energy, yade_engine
@@ -49,9 +49,10 @@ class ToolContact(Engine):
                 self.possible.append((interaction, index, interaction.id2 if first else interaction.id1, first))
 
     def surroundings(self):
-        """Rock near the tool, (n, 3) m and radii (n,) m, and the normal stiffness (N/m) of the tool's contacts, 0 without one."""
-        rock = sorted({contact[2] for contact in self.possible})
-        bodies = [O.bodies[body] for body in rock]
+        """Rock particles near the tool, (n, 3) m and radii (n,) m, and the normal stiffness (N/m) of the tool's contacts, 0
+        without one."""
+        bodies = [O.bodies[body] for body in sorted({contact[2] for contact in self.possible})]
+        bodies = [body for body in bodies if isinstance(body.shape, Sphere)]
         return (np.array([body.state.pos for body in bodies]).reshape(-1, 3), np.array([body.shape.radius for body in bodies]),
                 next((contact[0].phys.kn for contact in self.possible if contact[0].isReal), 0.0))
 
