@@ -42,7 +42,7 @@ OURS = dict(
     width=0.62, height=0.22, porosity=0.36, kn=1e6, kt=1e6, Rn=500.0, Rt=5000.0, mu=0.5, tool_kn=1e6, tool_kt=1e6,
     tool_mu=0.1, contact_damping=0.0, tooth_height=0.14, tooth_width=0.0758, rake=30.0, clearance=20.0, tip_radius=4e-3,
     velocity=0.04, depth_of_cut=0.03, approach=2e-3, background_damping=20.0, hardness=1.0, wear_coefficient=0.0,
-    acceleration=1.0, removal="none", damping_period=100, rock_sampling_period=20, wear_period=10, record_period=2e-3)
+    acceleration=1.0, removal="none", damping_period=100, rock_sampling_period=8, wear_period=10, record_period=2e-3)
 """Their defaults in space: numbers of M 13.2, and sizes of ours where M shows them in a figure."""
 
 PARAMETERS = [p for p in cutting.parameters(**OURS) if p.name in SHARED] + [
