@@ -93,7 +93,7 @@ class Cutting3D(Cutting):
     volume_unit = "m3"
     ratcheting_free = False
     """M's bonds are so soft that spheres overlap by a tenth of their size: springs sheared by full radii would then gain
-    energy, 14 % of the tool's work in a run of M 13.3."""
+    energy, whatever the step (tests/scenes/test_hard_cases.py)."""
 
     def __init__(self, values):
         self.values = values
