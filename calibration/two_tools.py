@@ -21,7 +21,7 @@ from pathlib import Path
 import matplotlib
 import numpy as np
 
-from rockwear.kernels.outline import contour
+from rockwear.kernels.outline import contour, nearest_arc
 from rockwear.kernels.wear_statistics import PLACE
 from rockwear.report import plots, shapes
 from rockwear.report.folder import RunFolder
@@ -62,9 +62,8 @@ def profile(run):
         outline, middle = model["outline"], model["tool_positions"]
         stored = shot["worn_depth"] * 2 * model["tool_radii"]
         worn = np.where(shot["alive"], stored, model["tool_volumes"])
-    points, arc = contour(outline, 1e-4)
-    nearest = np.array([np.linalg.norm(points - place, axis=1).argmin() for place in middle])
-    return np.histogram(arc[nearest], EDGES, weights=worn)[0] / PLACE
+    arc = nearest_arc(middle, *contour(outline, 1e-4))
+    return np.histogram(arc, EDGES, weights=worn)[0] / PLACE
 
 
 def grouped(runs):

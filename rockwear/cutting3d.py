@@ -182,8 +182,7 @@ class Cutting3D(Cutting):
 
     def _make_engines(self):
         v, rock = self.v, self.rock
-        self.bonds = Bonds(pairs=rock.pairs, law=self.law, strength_factor=rock.strength_factor, clock=lambda: self.time,
-                           ratcheting_free=self.ratcheting_free)
+        self.bonds = Bonds(pairs=rock.pairs, law=self.law, strength_factor=rock.strength_factor, clock=lambda: self.time)
         motion = Foresight(masses=rock.masses, inertias=rock.inertias, radii=rock.radii, held=rock.supported,
                            gravity=self.gravity)
         self._make_tool_engines(motion)

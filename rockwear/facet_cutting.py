@@ -9,10 +9,8 @@ from .cutting import Cutting
 from .cutting import parameters as cutting_parameters
 from .engines.bonds import RockFriction
 from .engines.facets import FacetContact, FacetWear
-from .engines.wear import WearProfile
 from .facet_tool import FacetTool
 from .kernels.checks import require
-from .kernels.wear_statistics import places
 from .parameters import Parameter, above_zero, choice, flag, number
 
 OF_FACETS = [
@@ -64,11 +62,7 @@ class FacetCutting(Cutting):
                               reshape=v.reshape, acceleration=v.acceleration)
 
     def _profile(self):
-        tool = self.tool
-        if not (self.v.acceleration and self.v.wear_coefficient and self.v.reshape):
-            return None
-        middle = tool.first[tool.boundary.facets].mean(axis=1)
-        return WearProfile(wear=self.wear, place=places(self.outline, middle[:, :2]))
+        return super()._profile() if self.v.wear_coefficient and self.v.reshape else None
 
     def _put_tool(self):
         self.bodies.add(range(self.tool.count))

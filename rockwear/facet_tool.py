@@ -37,6 +37,11 @@ class FacetTool:
         return self.boundary.first_volume
 
     @property
+    def positions(self):
+        """(m, d) m, the middles of the facets as they were made."""
+        return self.first[self.boundary.facets].mean(axis=1)
+
+    @property
     def neighbours(self):
         """[{facets that share a vertex with facet k}] by k."""
         at = [set() for _ in self.first]

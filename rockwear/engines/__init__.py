@@ -94,6 +94,11 @@ def law_functor(kind):
     return next(functor for functor in yade_engine(InteractionLoop).lawDispatcher.functors if isinstance(functor, kind))
 
 
+def geometry_functor(kind):
+    """The contact geometry of the type `kind` in the scene that is in O now."""
+    return next(functor for functor in yade_engine(InteractionLoop).geomDispatcher.functors if isinstance(functor, kind))
+
+
 def collide_next_step():
     """Have the collider run in the very next step, as it does in a loaded scene.
 

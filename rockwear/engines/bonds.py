@@ -4,10 +4,10 @@ from collections import namedtuple
 
 import numpy as np
 from scipy.spatial.transform import Rotation
-from yade import (InsertionSortCollider, JCFpmPhys, Law2_ScGeom_JCFpmPhys_JointedCohesiveFrictionalPM, O, Subdomain,
-                  Vector3)
+from yade import (Ig2_Sphere_Sphere_ScGeom, InsertionSortCollider, JCFpmPhys,
+                  Law2_ScGeom_JCFpmPhys_JointedCohesiveFrictionalPM, O, Subdomain, Vector3)
 
-from . import SLIDING, Engine, contact_energy, law_functor, yade_engine
+from . import SLIDING, Engine, contact_energy, geometry_functor, law_functor, yade_engine
 
 INTACT, BROKEN, GONE = 0, 1, 2
 """Status of a bond: GONE is broken, long apart and let go; a later meeting is a new contact."""
@@ -178,9 +178,8 @@ class Bonds(Engine):
 
     name = "bonds"
 
-    def __init__(self, *, pairs, law, strength_factor=None, clock, ratcheting_free=True):
+    def __init__(self, *, pairs, law, strength_factor=None, clock):
         super().__init__()
-        self.ratcheting_free = ratcheting_free
         self.pairs = np.asarray(pairs)
         self.bodies = np.unique(self.pairs).tolist()
         self.law = law
@@ -215,6 +214,7 @@ class Bonds(Engine):
     def connect(self):
         """Find the interactions of the scene that is in O now."""
         self.functor = law_functor(Law2_ScGeom_JCFpmPhys_JointedCohesiveFrictionalPM)
+        self.ratcheting_free = geometry_functor(Ig2_Sphere_Sphere_ScGeom).avoidGranularRatcheting
         self.intact, self.broken, self.ends = {}, {}, self.pairs.copy()
         self.gone = int(np.sum(self.status == GONE))
         for n, (i, j) in enumerate(self.pairs.tolist()):

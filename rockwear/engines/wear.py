@@ -1,6 +1,6 @@
 """What the tool meets: forces, friction work and Archard wear of its skin, and the removal of its particles."""
 import numpy as np
-from yade import InsertionSortCollider, O, Sphere, Vector3
+from yade import InsertionSortCollider, O, Vector3
 
 from ..kernels.wear_laws import NORMAL, WORK
 from . import SLIDING, Engine, contact_energy, yade_engine
@@ -47,14 +47,6 @@ class ToolContact(Engine):
             for interaction in O.interactions.withBodyAll(body):
                 first = interaction.id1 == body
                 self.possible.append((interaction, index, interaction.id2 if first else interaction.id1, first))
-
-    def surroundings(self):
-        """Rock particles near the tool, (n, 3) m and radii (n,) m, and the normal stiffness (N/m) of the tool's contacts, 0
-        without one."""
-        bodies = [O.bodies[body] for body in sorted({contact[2] for contact in self.possible})]
-        bodies = [body for body in bodies if isinstance(body.shape, Sphere)]
-        return (np.array([body.state.pos for body in bodies]).reshape(-1, 3), np.array([body.shape.radius for body in bodies]),
-                next((contact[0].phys.kn for contact in self.possible if contact[0].isReal), 0.0))
 
     def forget_erased(self):
         """Contacts of erased bodies, which still look real, are not sampled any more."""
@@ -252,20 +244,10 @@ class Wear(WearEngine):
     def _remove(self, removed, uncovered):
         loose = self.erosion.detached().tolist()
         self.erosion.drop(loose)
-        gone, uncovered = removed + loose, [i for i in uncovered if self.erosion.alive[i]]
-        near = self.contact.surroundings()
-        self.contact_energy_removed += self.tool.erase(gone)
+        self.contact_energy_removed += self.tool.erase(removed + loose)
         self.contact.forget_erased()
-        self.tool.add(uncovered)
-        self.contact_energy_removed -= self._begun(uncovered, *near)
+        self.tool.add([i for i in uncovered if self.erosion.alive[i]])
         self.on_removal(removed, loose)
-
-    def _begun(self, uncovered, places, radii, stiffness):
-        """Strain energy (J) with which contacts of `uncovered` particles begin, where rock is in their place already."""
-        own = np.array([O.bodies[self.tool.body_of[i]].state.pos for i in uncovered]).reshape(-1, 3)
-        apart = np.linalg.norm(own[:, None] - places[None], axis=2)
-        overlap = np.maximum(self.tool.tool.radii[uncovered][:, None] + radii[None] - apart, 0.0)
-        return 0.5 * stiffness * float(np.sum(overlap**2))
 
     def state(self):
         return {**super().state(), **self.erosion.state()}

@@ -7,6 +7,7 @@ import csv
 import math
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from rockwear.kernels.checks import ParameterError, finite, not_negative, positive, require
 
@@ -216,6 +217,11 @@ def read_outline(path):
             raise ParameterError("outline", path, f"two numbers a row, unlike line {line}: {','.join(row)}") from None
         vertices.append((x, y))
     return check_polygon(np.reshape(vertices, (-1, 2)), "outline")
+
+
+def nearest_arc(points, along, arc):
+    """(m,) m, arc length of the point of a contour (`along`, `arc`: see `contour`) that is nearest to each point (m, 2)."""
+    return arc[cKDTree(along).query(points)[1]]
 
 
 def contour(outline, spacing):

@@ -6,9 +6,8 @@ Both are questions of statistics: how well T seconds sample where the tool wears
 the tool goes.
 """
 import numpy as np
-from scipy.spatial import cKDTree
 
-from .outline import contour
+from .outline import contour, nearest_arc
 
 MIN_BLOCKS = 8
 """Fewer blocks of a record tell nothing of its scatter."""
@@ -21,7 +20,7 @@ ENOUGH_EVENTS = 10
 def places(outline, points):
     """(m,) number of the place, PLACE long, along an outline (k, 2) m that each of the points (m, 2) is nearest to."""
     along, arc = contour(outline, PLACE / 10)
-    return np.floor((arc[cKDTree(along).query(points)[1]] - arc[0]) / PLACE).astype(int)
+    return np.floor((nearest_arc(points, along, arc) - arc[0]) / PLACE).astype(int)
 
 
 def distribution_error(increments):

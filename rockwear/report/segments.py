@@ -2,7 +2,7 @@
 import numpy as np
 from matplotlib import colormaps
 
-from ..kernels.outline import contour
+from ..kernels.outline import contour, nearest_arc
 from . import shapes
 from .cutting import CRACK, cut, draw_cracks, draw_energy, draw_forces, moving_picture, stage_of, summary_line, trusted
 from .page import Section, machine_tiles, percent, quantity, tiles
@@ -60,9 +60,8 @@ def along(run):
     way = end - begin
     length = np.linalg.norm(way, axis=1)
     middle = 0.5 * (begin + end)
-    points, arc = contour(vertices[shapes.loop(facets)], 1e-4)
-    nearest = np.linalg.norm(points[None] - middle[:, None], axis=2).argmin(axis=1)
-    return middle, length, np.column_stack([way[:, 1], -way[:, 0]]) / length[:, None], arc[nearest]
+    arc = nearest_arc(middle, *contour(vertices[shapes.loop(facets)], 1e-4))
+    return middle, length, np.column_stack([way[:, 1], -way[:, 0]]) / length[:, None], arc
 
 
 def wear(run):

@@ -36,6 +36,7 @@ TIME_STEP = 1e-7
 RATE = 0.2
 """First step over the displacement of the peak: fast enough to break most of a lattice."""
 TEAR, SHEAR, CRUSH = np.diag([1.0, 1.0]), np.array([[0.0, 1.0], [0.0, 0.0]]), np.diag([-1.0, 1.0])
+SQUEEZE = np.array([[-1.2e5, -8e4], [4e4, 6e4]])
 
 
 def lattice():
@@ -57,7 +58,7 @@ def moving_lattice(law, gradient, *first, ratcheting_free=True):
     scene.put_rock_materials(mu=law.mu)
     scene.put_rock(rock)
     scene.put_loop(kn=law.kn, kt=law.kt, mu=law.mu, ratcheting_free=ratcheting_free)
-    bonds = Bonds(pairs=rock.pairs, law=law, clock=lambda: O.time, ratcheting_free=ratcheting_free)
+    bonds = Bonds(pairs=rock.pairs, law=law, clock=lambda: O.time)
     friction = RockFriction(bonds=bonds, motion=Foresight(masses=rock.masses, inertias=rock.inertias, radii=rock.radii,
                                                           held=rock.supported))
     scene.make_bonds(rock, bonds)
@@ -207,31 +208,20 @@ def squeezed(ratcheting_free, finer=1):
     """Unbreakable bonds that are pressed and sheared by a quarter of a disc, and swing on without damping.
     -> (largest overlap over the diameter, energy gained over that put in)."""
     law = ElasticBrittle(Rn=1e12, Rt=1e12, **SPRING)
-    O.reset()
-    rock = lattice()
-    scene.put_rock_materials(mu=law.mu)
-    scene.put_rock(rock)
-    scene.put_loop(kn=law.kn, kt=law.kt, mu=law.mu, ratcheting_free=ratcheting_free)
-    bonds = Bonds(pairs=rock.pairs, law=law, clock=lambda: O.time, ratcheting_free=ratcheting_free)
-    scene.make_bonds(rock, bonds)
-    for i, (x, y) in enumerate((rock.positions - rock.positions.mean(axis=0)) @ np.array([[-1.2e5, 4e4], [-8e4, 6e4]])):
-        O.bodies[i].state.vel = (x, y, 0.0)
+    _, energy = moving_lattice(law, SQUEEZE, ratcheting_free=ratcheting_free)
     O.dt = 0.1 * TIME_STEP / finer
-    engines.enlist([bonds])
-    O.engines = O.engines[:-1] + engines.runners({"bonds": 1}) + O.engines[-1:]
-    bonds.connect()
-    put_in, deepest = utils.kineticEnergy(), 0.0
+    put_in, deepest = energy(), 0.0
     for _ in range(100):
         run(200 * finer)
         deepest = max(deepest, max(i.geom.penetrationDepth for i in O.interactions) / (2 * RADIUS))
-    return deepest, (utils.kineticEnergy() + bonds.elastic_energy()) / put_in - 1
+    return deepest, energy() / put_in - 1
 
 
 def soft(seed):
     """A lattice whose bonds stretch by a twentieth of a disc before they break, squeezed and sheared until most have.
     -> share of broken bonds, energy in no book over that put in."""
     law = ElasticBrittle(Rn=1e6, Rt=1e7, **SPRING)
-    bonds, energy = moving_lattice(law, np.array([[-1.2e5, -8e4], [4e4, 6e4]]), ratcheting_free=False)
+    bonds, energy = moving_lattice(law, SQUEEZE, ratcheting_free=False)
     chance = np.random.default_rng(seed)
     for body in O.bodies:
         body.state.vel += (*chance.normal(0, 20, 2), 0.0)
