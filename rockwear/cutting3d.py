@@ -11,6 +11,7 @@ from .engines.bonds import Bonds, LettingGo, RockFriction
 from .engines.facets import AccountOfLooseRock
 from .engines.motion import BackgroundDamping, Foresight
 from .engines.record import Recorder, Watch
+from .engines.turning import Turning
 from .engines.wear import ToolContact, Wear
 from .facet_cutting import FacetCutting
 from .facet_tool import FacetTool
@@ -192,7 +193,8 @@ class Cutting3D(Cutting):
         pull = float(rock.masses.sum()) * v.gravity * v.radius
         self.watch = Watch(work=lambda: self.contact.work_done,
                            floor=25 * float(rock.masses.max()) * max(v.velocity, v.lowering_velocity)**2 + pull)
-        self._enlist(self.bonds, self.contact, self.rock_friction, LettingGo(self.bonds), self.wear, self.profile, self.damping,
+        turning = Turning(bonds=self.bonds, radii=rock.radii) if len(rock.pairs) else None
+        self._enlist(turning, self.bonds, self.contact, self.rock_friction, LettingGo(self.bonds), self.wear, self.profile, self.damping,
                      self.recorder, self.watch)
 
     def _damping_rate(self):
@@ -200,7 +202,7 @@ class Cutting3D(Cutting):
 
     def _periods(self):
         v = self.v
-        return {"bonds": 1, "tool_contact": v.sampling_period, "rock_friction": v.rock_sampling_period,
+        return {"turning": 1, "bonds": 1, "tool_contact": v.sampling_period, "rock_friction": v.rock_sampling_period,
                 "wear": v.wear_period, "wear_profile": cutting.PROFILE_PERIOD * v.wear_period, "letting_go": 200,
                 "background_damping": v.damping_period, "watch": 200, "recorder": max(1, self._steps(v.record_period))}
 

@@ -341,6 +341,8 @@ class Scene:
     `results` and `audits` say what a run's folder shows.
     """
 
+    leading = {"turning"}
+    """Engines that come first in a step, before its forces."""
     looking = {"bonds", "rock_friction"}
     """Engines that look at the forces of this step and come before the integrator; the others come after it."""
     speed_up = 1.0
@@ -368,9 +370,11 @@ class Scene:
         O.dt = self.time_step
         periods = self._periods()
         names = [engine.name for engine in self.live if periods[engine.name]]
-        before = engines.runners({name: periods[name] for name in names if name in self.looking})
-        after = engines.runners({name: periods[name] for name in names if name not in self.looking})
-        O.engines = O.engines[:-1] + before + O.engines[-1:] + after
+        first = [name for name in names if name in self.leading]
+        before = [name for name in names if name in self.looking]
+        after = [name for name in names if name not in self.leading | self.looking]
+        first, before, after = (engines.runners({name: periods[name] for name in group}) for group in (first, before, after))
+        O.engines = first + O.engines[:-1] + before + O.engines[-1:] + after
         self._connect()
         self.first_iteration = O.iter
 

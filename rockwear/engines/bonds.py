@@ -407,6 +407,10 @@ class Bonds(Engine):
                 work += (longer - shift) * (pressing + 0.5 * phys.kn * (longer - shift))
         return work
 
+    def contact(self, n):
+        """YADE's phys of the intact bond n."""
+        return self.carried[n].phys if n in self.carried else self.intact[n][1]
+
     def in_contact(self):
         """(m,) bool: bonds that are intact, or broken and pressed together; what heat may pass through."""
         touching = self.status == INTACT

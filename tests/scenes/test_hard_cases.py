@@ -75,3 +75,11 @@ def test_springs_sheared_as_contacts_move_gain_no_energy(checks):
 def test_soft_bonds_sheared_as_contacts_move_break_with_their_energy(checks):
     for broken, residual in checks["soft"]:
         assert broken > 0.8 and abs(residual) < 3e-4
+
+
+def test_a_spinning_chip_gains_no_energy(checks):
+    """By YADE's rule it does: kernels.turning."""
+    gained, whole = checks["spinning"]["by YADE's rule"]
+    assert whole and gained > 0.2
+    kept, whole = checks["spinning"]["corrected"]
+    assert whole and abs(kept) < 0.005
