@@ -25,13 +25,15 @@ LONG = dict(FEW_PICTURES, cycles=28, hardness_temperature=293.15, heat="false")
 CASES = {
     "test tooth, 2e5": (TOOTH, dict(LONG, acceleration=2e5)),
     "ripper, 2e5": (RIPPER, dict(FEW_PICTURES, acceleration=2e5)),
+    "ripper, 2e5, depth rule": (RIPPER, dict(FEW_PICTURES, acceleration=2e5, removal="depth")),
     "test tooth, 4e5": (TOOTH, dict(LONG, acceleration=4e5, cycles=14)),
     "test tooth, 8e5": (TOOTH, dict(LONG, acceleration=8e5, cycles=7)),
+    "test tooth, 1.6e6": (TOOTH, dict(LONG, acceleration=1.6e6, cycles=3)),
     "test tooth, 2e5, twice as deep": (TOOTH, dict(LONG, acceleration=2e5, depth_of_cut=0.016)),
     "test tooth, 7000": (TOOTH, dict(LONG, acceleration=7000)),
     "ripper, 7000": (RIPPER, dict(FEW_PICTURES)),
 }
-SAME_WORK = "test tooth, 2e5", "test tooth, 4e5", "test tooth, 8e5"
+SAME_WORK = "test tooth, 2e5", "test tooth, 4e5", "test tooth, 8e5", "test tooth, 1.6e6"
 """R's first rule: wear twice as fast and half as long, and that again. The shapes of the first are compared."""
 COARSE = dict(coarsening=3)
 """Rock graded threefold below the reach of the cut: half the time."""

@@ -81,7 +81,7 @@ PARAMETERS = [
     Parameter("approach", 0.5e-3, "m", number(0), "free way before the tool meets the rock", "ours"),
     Parameter("start_up", 0.005, "s", above_zero, "time of the start-up cut", "M 9.1"),
     Parameter("cycles", 3, "", integer(0), "cycles after the start-up, each on the rock that the start-up left"),
-    Parameter("cycle_time", 0.007, "s", above_zero, "time of a cycle", "ours"),
+    Parameter("cycle_time", 0.007, "s", above_zero, "time of a cycle, beside what a worn tool needs to reach the rock", "ours"),
     Parameter("background_damping", 500.0, "1/s", number(0), "global viscous damping, rate of decay", "ours: M gives none"),
     # wear
     Parameter("steel", "MET91", "", choice("MET71", "MET91"), "hardness table", "M 9.2, table 6.1"),
@@ -170,6 +170,7 @@ class Cutting(scene.Scene):
         self.rock = self._specimen(v)
         self.tool = self._make_tool(self.outline)
         self.motion = self._motion(v)
+        self.foremost = self._foremost()
         self._choose_time_step(v)
         self._plan(self._stages(v))
         self.book = {"kinetic": 0.0, "elastic": 0.0, "contact_elastic": 0.0}
@@ -403,6 +404,19 @@ class Cutting(scene.Scene):
                 self.start["rock_temperature"] = self.heat.network.temperature[:self.rock.count].copy()
         elif not self.finished:
             self._put_back(folder)
+        if not self.finished:
+            self._catch_up()
+
+    def _foremost(self):
+        """x (m) in the tool's frame of the foremost of what is left of it below the rock's surface, -inf for nothing."""
+        return self.tool.foremost(below=self.v.depth_of_cut)
+
+    def _catch_up(self):
+        """Lengthen the cycle by the way that a worn tool is behind a new one, so that each goes through the same rock."""
+        behind = self.foremost - self._foremost()
+        if math.isfinite(behind):
+            name, steps = self.stages[self.stage]
+            self.stages[self.stage] = name, steps + self._steps(behind / self.v.velocity)
 
     def _put_back(self, folder):
         """The rock of the start-up's end, and in it the tool as it is worn now (M 9.1)."""
@@ -433,7 +447,7 @@ class Cutting(scene.Scene):
 
     def state(self):
         return {**super().state(), "book": self.book, "base": self.base, "bodies": self.bodies.state(),
-                "path_start": self.path_start,
+                "path_start": self.path_start, "stage_steps": np.array([steps for _, steps in self.stages]),
                 "cracks": np.array(self.cracks_of_past_cycles, float).reshape(-1, len(Crack._fields)),
                 "start": getattr(self, "start", {})}
 
@@ -447,6 +461,7 @@ class Cutting(scene.Scene):
             shutil.copy(directory / "start_up.yade.gz", folder)
         super().restore(state, directory, folder)
         self.path_start = int(state["path_start"])
+        self.stages = [(name, int(steps)) for (name, _), steps in zip(self.stages, state["stage_steps"])]
         self.book = {name: float(value) for name, value in state["book"].items()}
         self.base = {name: float(value) for name, value in state["base"].items()}
         self.start = state["start"] if "start" in state else {}
@@ -589,6 +604,11 @@ class Cutting(scene.Scene):
     def warnings(self):
         if not self.profile:
             return []
+        short = [] if math.isfinite(self._foremost()) else [
+            f"nothing of the tool is left below the rock's surface, of its lowest {self.v.depth_of_cut:g} m: it cuts no more"]
+        return short + self._distrust()
+
+    def _distrust(self):
         v, found = self.v, {name: value for name, (value, _) in self._trust().items()}
         if not found["trusted_acceleration"] < v.acceleration:
             return []

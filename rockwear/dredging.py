@@ -185,6 +185,10 @@ class Dredging(Cutting):
         elif self.heat:
             self.heat.leave_rock()
 
+    def _foremost(self):
+        """Every turn leads the pick through the whole rock, however worn it is."""
+        return 0.0
+
     def _make_engines(self):
         super()._make_engines()
         if self.heat:

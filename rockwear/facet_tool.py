@@ -52,8 +52,9 @@ class FacetTool:
                 for number, facet in enumerate(self.boundary.facets.tolist())]
 
     def foremost(self, below):
-        """Largest x reached below the height `below` (both m, in the tool's own frame)."""
-        return float(self.first[self.first[:, 1] < below, 0].max())
+        """Largest x that vertices have below the height `below` (both m, in the tool's own frame), -inf for none."""
+        vertices = self.boundary.vertices
+        return float(vertices[vertices[:, 1] < below, 0].max(initial=-np.inf))
 
 
 def corners(vertices, facets):

@@ -157,7 +157,6 @@ class Run:
 
     def _loop(self):
         last_checkpoint = last_word = time.time()
-        self.total = sum(steps for _, steps in self.scene.stages)
         self.started, self.steps_here = time.time(), 0
         while not self.scene.finished:
             if self.scene.time >= self.next_snapshot - 0.5 * self.scene.time_step:
@@ -189,9 +188,10 @@ class Run:
     def _say_progress(self):
         scene = self.scene
         done = sum(steps for _, steps in scene.stages[:scene.stage]) + (0 if scene.finished else scene.step)
-        left = (self.total - done) / max(self.steps_here, 1) * (time.time() - self.started)
+        total = sum(steps for _, steps in scene.stages)
+        left = (total - done) / max(self.steps_here, 1) * (time.time() - self.started)
         name = "done" if scene.finished else scene.stages[scene.stage][0]
-        line = (f"{name:9s} {100 * done / self.total:5.1f} %  t = {1e3 * scene.time:.2f} ms  {scene.progress()}, "
+        line = (f"{name:9s} {100 * done / total:5.1f} %  t = {1e3 * scene.time:.2f} ms  {scene.progress()}, "
                 f"{int(left) // 60} min {int(left) % 60:02d} s left")
         print("\r" + line + "\033[K" if sys.stdout.isatty() else line, end="" if sys.stdout.isatty() else "\n", flush=True)
 

@@ -27,7 +27,17 @@ def neighbours(positions, radii):
     return np.unique(np.sort(np.vstack([near, np.column_stack([own, closest.ravel()])]), axis=1), axis=0)
 
 
-class Tool:
+class ParticleTool:
+    """What all tools of particles have: positions (n, 2 or 3) m, radii (n,) m, and their erosion (kernels.erosion)."""
+
+    def foremost(self, below):
+        """Largest x reached by particles with any part below the height `below` (both m, in the tool's own frame), as long
+        as they are not worn away; -inf for none."""
+        low = (self.positions[:, 1] - self.radii < below) & self.erosion.alive
+        return float((self.positions[low, 0] + self.radii[low]).max(initial=-np.inf))
+
+
+class Tool(ParticleTool):
     """Particles that fill an outline (k, 2) m, each standing for its part of the outline's area times 1 m.
 
     radius_min, radius_max: m; removal: "volume" or "depth" (kernels.erosion); conductivity: W/m K; density: kg/m3,
@@ -84,13 +94,8 @@ class Tool:
         """(m,) kg, the mass each particle stands for; they add up to the outline's."""
         return self.material.density * self.volumes
 
-    def foremost(self, below):
-        """Largest x reached by particles with any part below the height `below` (both m, in the tool's own frame)."""
-        low = self.positions[:, 1] - self.radii < below
-        return float((self.positions[low, 0] + self.radii[low]).max())
 
-
-class LayeredTool:
+class LayeredTool(ParticleTool):
     """Spheres of one radius (m) that fill an outline (k, 2) m drawn out across the cut.
 
     They lie in equal layers a diameter apart, about z = 0: each is the same packing of the outline, whose outermost

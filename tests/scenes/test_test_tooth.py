@@ -184,6 +184,31 @@ def test_every_cycle_starts_on_the_rock_that_the_start_up_left(tmp_path):
         assert np.array_equal(shot["rock_positions"], left["rock_positions"])
 
 
+def test_a_worn_tool_gets_the_time_to_come_to_the_rock(tmp_path):
+    """Else a tooth whose tip has gone back by more than a cycle's way would meet no rock any more."""
+    values = dict(heat="false", acceleration=3e6, snapshot_period=1, cycles=3, cycle_time=8e-4)
+    run = test_tooth(tmp_path / "whole", **values)
+    model = np.load(run.out / "model.npz")
+    shots = [np.load(file) for file in sorted((run.out / "snapshots").glob("*.npz"))]
+    ends = [shot for shot, later in zip(shots, shots[1:]) if later["stage"] != shot["stage"]]
+    low = model["tool_positions"][:, 1] - model["tool_radii"] < SMALL["depth_of_cut"]
+    foremost = np.array([(model["tool_positions"][:, 0] + model["tool_radii"])[low & end["alive"]].max() for end in ends])
+    behind = (model["tool_positions"][:, 0] + model["tool_radii"])[low].max() - foremost
+    assert behind[0] > 5e-3 and behind[2] > behind[0]
+    times = np.array([float(end["time"]) for end in ends])
+    assert np.diff(times) == pytest.approx(8e-4 + behind[:-1] / 4.0, abs=2 * value(run, "time_step"))
+    stopped = interrupt(tmp_path / "out", signal.SIGTERM, 4, checkpoint_interval=0.01, **values)
+    assert stopped.code == 128 + signal.SIGTERM
+    assert_as_if_never_stopped(test_tooth(tmp_path / "out", "--resume", checkpoint_interval=0.01, **values), run)
+
+
+def test_a_tool_that_does_not_reach_the_rock_any_more_says_so(tmp_path):
+    run = test_tooth(tmp_path / "out", heat="false", acceleration=2e7, start_up=5e-4, cycle_time=2e-4)
+    assert run.code == 0, run.stderr
+    assert run.summary["ended"] == "finished" and value(run, "mass_lost") < 0.9
+    assert sum("it cuts no more" in line for line in run.summary["warnings"]) == 1
+
+
 def test_every_crack_is_logged_with_place_mode_and_energy(cut):
     lines = (cut.out / "cracks.csv").read_text(encoding="utf-8").splitlines()
     assert lines[0].startswith("time [s],x [m],y [m],z [m],normal_x [-]") and "energy [J]" in lines[0]
