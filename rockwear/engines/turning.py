@@ -7,8 +7,8 @@ from . import Engine
 from .bonds import INTACT
 
 FAST = 0.01
-"""Angle (rad) a step from which a bond counts as turning fast. Slower chips gain less than 20 % of their energy a second in
-steps of 30 us; background damping takes 40 times as much again in that second by default."""
+"""Angle (rad) a step from which a bond counts as turning fast. In steps of 30 us slower chips gain energy at less than
+0.2 of it a second; the default background damping takes 40 a second."""
 LOOKING_PERIOD = 100
 """Steps between looks for such bonds."""
 
