@@ -394,6 +394,8 @@ class Cutting(scene.Scene):
         super().end_stage(folder)
         self._begin_stage(folder)
         self.base = self._stored_energy()
+        if not self.finished and not math.isfinite(self._foremost()):
+            raise RunEnded(f"nothing of the tool reaches the rock any more at t = {self.time:g} s", True)
 
     def _begin_stage(self, folder):
         if self.stage == 1:
