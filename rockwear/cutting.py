@@ -416,7 +416,7 @@ class Cutting(scene.Scene):
     def _catch_up(self):
         """Lengthen the cycle by the way that a worn tool is behind a new one, so that each goes through the same rock."""
         behind = self.foremost - self._foremost()
-        if math.isfinite(behind):
+        if 0.0 < behind < math.inf:
             name, steps = self.stages[self.stage]
             self.stages[self.stage] = name, steps + self._steps(behind / self.v.velocity)
 
