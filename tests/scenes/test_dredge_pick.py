@@ -10,7 +10,7 @@ from .conftest import ROOT, arguments, finish, history, run_script, start
 
 SCRIPT = ROOT / "yade_scripts/dredge_pick.py"
 TINY = dict(cut_time=0.016, cycles=2, tool_radius_min=2e-3, tool_radius_max=2e-3, record_period=5e-4,
-            cooling_period=0.02, snapshot_period=0.25, acceleration=2e5)
+            cooling_period=0.02, snapshot_period=0.25, acceleration=4e5)
 
 
 def dredge(out, *flags, **values):
