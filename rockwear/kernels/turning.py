@@ -17,8 +17,7 @@ def shear_to_start_from(shear, line, velocity, spins, radii, kt, dt):
         s' = R(R(s) - kt P (v - (r1' w1 + r2' w2) x n) dt),   r' = r - overlap / 2
 
     with R the turn over half the step, P the projection across the normal n, all but s and s' in the middle of the step.
-    (Ours; YADE's rule: ScGeom::rotate and getIncidentVel, with
-    avoidGranularRatcheting false.)
+    (Ours; YADE's rule: ScGeom::rotate and getIncidentVel, with avoidGranularRatcheting false.)
 
     shear (n, 3) N, of the last step; line (n, 3) m, from the first centre to the second, at the end of the step; velocity
     (n, 3) m/s, of the second centre to the first, and spins (2, n, 3) rad/s, in the middle of the step; radii (2, n) m; kt
