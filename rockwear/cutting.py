@@ -170,7 +170,7 @@ class Cutting(scene.Scene):
         self.rock = self._specimen(v)
         self.tool = self._make_tool(self.outline)
         self.motion = self._motion(v)
-        self.foremost = self._foremost()
+        self.foremost_when_new = self._foremost()
         self._choose_time_step(v)
         self._plan(self._stages(v))
         self.book = {"kinetic": 0.0, "elastic": 0.0, "contact_elastic": 0.0}
@@ -415,7 +415,7 @@ class Cutting(scene.Scene):
 
     def _catch_up(self):
         """Lengthen the cycle by the way that a worn tool is behind a new one, so that each goes through the same rock."""
-        behind = self.foremost - self._foremost()
+        behind = self.foremost_when_new - self._foremost()
         if 0.0 < behind < math.inf:
             name, steps = self.stages[self.stage]
             self.stages[self.stage] = name, steps + self._steps(behind / self.v.velocity)

@@ -51,18 +51,24 @@ def lattice():
                            pairs=contacts(places, np.full(count, RADIUS), 1e-6 * RADIUS))
 
 
+def bonded(rock, law, **loop):
+    """`rock` alone in a new loop, all its pairs bonded. -> its engine of bonds."""
+    O.reset()
+    scene.put_rock_materials(mu=law.mu)
+    scene.put_rock(rock)
+    scene.put_loop(kn=law.kn, kt=law.kt, mu=law.mu, **loop)
+    bonds = Bonds(pairs=rock.pairs, law=law, clock=lambda: O.time)
+    scene.make_bonds(rock, bonds)
+    return bonds
+
+
 def moving_lattice(law, gradient, *first, ratcheting_free=True):
     """Bonded rock with a linear field of velocity (1/s), free at its edges; engines `first` are visited before all.
     -> its engine of bonds, and a function that gives the energy in no book (J)."""
-    O.reset()
     rock = lattice()
-    scene.put_rock_materials(mu=law.mu)
-    scene.put_rock(rock)
-    scene.put_loop(kn=law.kn, kt=law.kt, mu=law.mu, ratcheting_free=ratcheting_free)
-    bonds = Bonds(pairs=rock.pairs, law=law, clock=lambda: O.time)
+    bonds = bonded(rock, law, ratcheting_free=ratcheting_free)
     friction = RockFriction(bonds=bonds, motion=Foresight(masses=rock.masses, inertias=rock.inertias, radii=rock.radii,
                                                           held=rock.supported))
-    scene.make_bonds(rock, bonds)
     for i, (x, y) in enumerate((rock.positions - rock.positions.mean(axis=0)) @ np.transpose(gradient)):
         O.bodies[i].state.vel = (x, y, 0.0)
     O.dt = TIME_STEP
@@ -186,12 +192,7 @@ def rolled(law):
     masses = 2500 * math.pi * radii**2
     rock = SimpleNamespace(count=2, positions=np.array([(0.0, 0.0), (radii.sum(), 0.0)]), radii=radii, masses=masses,
                            inertias=0.5 * masses * radii**2, supported=np.zeros(2, bool), pairs=np.array([(0, 1)]))
-    O.reset()
-    scene.put_rock_materials(mu=law.mu)
-    scene.put_rock(rock)
-    scene.put_loop(kn=law.kn, kt=law.kt, mu=law.mu)
-    bonds = Bonds(pairs=rock.pairs, law=law, clock=lambda: O.time)
-    scene.make_bonds(rock, bonds)
+    bonds = bonded(rock, law)
     O.dt, speed = TIME_STEP, 2 * math.pi * 3 / (3000 * TIME_STEP)
     engines.enlist([bonds])
     O.engines = O.engines[:-1] + engines.runners({"bonds": 1}) + O.engines[-1:]
@@ -242,12 +243,7 @@ def spinning(corrected):
     rock = SimpleNamespace(count=4, positions=places, radii=np.full(4, radius), masses=masses,
                            inertias=0.4 * masses * radius**2, supported=np.zeros(4, bool),
                            pairs=contacts(places, np.full(4, radius), 0.0))
-    O.reset()
-    scene.put_rock_materials(mu=law.mu)
-    scene.put_rock(rock)
-    scene.put_loop(kn=law.kn, kt=law.kt, mu=law.mu, ratcheting_free=False)
-    bonds = Bonds(pairs=rock.pairs, law=law, clock=lambda: O.time)
-    scene.make_bonds(rock, bonds)
+    bonds = bonded(rock, law, ratcheting_free=False)
     chance = np.random.default_rng(1)
     for body, place in zip(O.bodies, places):
         body.state.vel = tuple(np.cross(spin, place) + chance.normal(0, 0.5, 3))
