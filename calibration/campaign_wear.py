@@ -77,12 +77,12 @@ def mass_loss(runs):
         time, whole = run.column("time"), run.model["tool_volumes"].sum()
         worn = 100 * run.column("worn_volume") / whole
         line, = raw.plot(plots.MS * time, worn, label=name)
-        hours = time * run.parameter("acceleration", 1.0) / 3600
+        hours = run.column("working_time") * run.parameter("acceleration", 1.0) / 3600
         scaled.loglog(hours[worn > 0], worn[worn > 0], color=line.get_color())
     raw.plot(plots.MS * OF_M[0], OF_M[1], "k*", markersize=12, label="M 9.2, k × 7000")
     scaled.plot(OF_M[0] * 7000 / 3600, OF_M[1], "k*", markersize=12)
     raw.set(xlabel="simulated time / ms", ylabel="worn off / % of the tool", yscale="log", ylim=(1e-2, 100))
-    scaled.set(xlabel="working time (time × acceleration) / h", ylabel="worn off / % of the tool", ylim=(1e-2, 100))
+    scaled.set(xlabel="working time × acceleration / h", ylabel="worn off / % of the tool", ylim=(1e-2, 100))
     raw.legend(fontsize=8)
     return figure
 
@@ -91,7 +91,7 @@ def wear_table(runs):
     """A line a run: how much, how fast, and how far to believe it."""
     rows = []
     for name, run in runs.items():
-        hours = run.result("simulated_time") * run.parameter("acceleration", 1.0) / 3600
+        hours = run.result("working_time") * run.parameter("acceleration", 1.0) / 3600
         lost = 100 * run.result("worn_volume") / run.model["tool_volumes"].sum()
         friction = run.summary["audits"]["friction"]["tool"]
         rows.append((name, page.quantity(run.result("simulated_time"), "s"), f"{hours:.2f} h", f"{lost:.3g} %",

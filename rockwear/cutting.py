@@ -173,6 +173,8 @@ class Cutting(scene.Scene):
         self.foremost_when_new = self._foremost()
         self._choose_time_step(v)
         self._plan(self._stages(v))
+        self.leads = np.zeros(len(self.stages), int)
+        """Steps of each stage in which a worn tool comes to where the new one stood."""
         self.book = {"kinetic": 0.0, "elastic": 0.0, "contact_elastic": 0.0}
         self.cracks_of_past_cycles = []
 
@@ -418,7 +420,16 @@ class Cutting(scene.Scene):
         behind = self.foremost_when_new - self._foremost()
         if 0.0 < behind < math.inf:
             name, steps = self.stages[self.stage]
-            self.stages[self.stage] = name, steps + self._steps(behind / self.v.velocity)
+            self.leads[self.stage] = self._steps(behind / self.v.velocity)
+            self.stages[self.stage] = name, steps + int(self.leads[self.stage])
+
+    @property
+    def working_time(self):
+        """Simulated seconds without those in which a worn tool came to where the new one stood."""
+        led = self.leads[:self.stage].sum()
+        if not self.finished:
+            led += min(self.step, self.leads[self.stage])
+        return self.time - float(led) * self.time_step * self.speed_up
 
     def _put_back(self, folder):
         """The rock of the start-up's end, and in it the tool as it is worn now (M 9.1)."""
@@ -449,7 +460,7 @@ class Cutting(scene.Scene):
 
     def state(self):
         return {**super().state(), "book": self.book, "base": self.base, "bodies": self.bodies.state(),
-                "path_start": self.path_start, "stage_steps": np.array([steps for _, steps in self.stages]),
+                "path_start": self.path_start, "stage_steps": np.array([steps for _, steps in self.stages]), "leads": self.leads,
                 "cracks": np.array(self.cracks_of_past_cycles, float).reshape(-1, len(Crack._fields)),
                 "start": getattr(self, "start", {})}
 
@@ -464,6 +475,7 @@ class Cutting(scene.Scene):
         super().restore(state, directory, folder)
         self.path_start = int(state["path_start"])
         self.stages = [(name, int(steps)) for (name, _), steps in zip(self.stages, state["stage_steps"])]
+        self.leads = state["leads"].copy()
         self.book = {name: float(value) for name, value in state["book"].items()}
         self.base = {name: float(value) for name, value in state["base"].items()}
         self.start = state["start"] if "start" in state else {}
@@ -510,8 +522,9 @@ class Cutting(scene.Scene):
         self.bodies.connect()
         impulse = self.contact.take_impulse()[:2] @ self.bodies.pose.rotation
         force = impulse / elapsed if elapsed else impulse
-        return {"time": (self.time, "s"), "stage": (self.stage, "-"), "cutting_force": (-force[0], "N/m"),
-                "thrust_force": (force[1], "N/m"), "tool_work": (self.contact.work_done, "J/m"),
+        return {"time": (self.time, "s"), "stage": (self.stage, "-"), "working_time": (self.working_time, "s"),
+                "cutting_force": (-force[0], "N/m"), "thrust_force": (force[1], "N/m"),
+                "tool_work": (self.contact.work_done, "J/m"),
                 "kinetic_energy": (utils.kineticEnergy(), "J/m"), "tool_friction": (self.contact.friction, "J/m"),
                 "bond_breaking": (self.bonds.energy_released, "J/m")}
 
@@ -564,7 +577,7 @@ class Cutting(scene.Scene):
 
     def _cut_area(self):
         """Area (m2) of the rock that the tool has gone through."""
-        return self.v.depth_of_cut * self.v.velocity * self.time
+        return self.v.depth_of_cut * self.v.velocity * self.working_time
 
     def _worn_words(self):
         return f"{100 * self.tool.erosion.mass_fraction_lost:.2f} % of the tool worn"
@@ -578,12 +591,14 @@ class Cutting(scene.Scene):
     def results(self):
         """{name: (value, unit)} of the run."""
         columns = self.recorder.columns()
-        cutting = columns.get("cutting_force", np.zeros(1))
-        area = self._cut_area()
-        found = {"simulated_time": (self.time, "s"), "time_step": (self.time_step, "s"),
+        cutting, thrust = (columns.get(f"{name}_force", np.zeros(1)) for name in ("cutting", "thrust"))
+        area, working_time = self._cut_area(), self.working_time
+        # On its way to the rock a worn tool meets no force, and that way is no cut.
+        at_work = self.time / working_time if working_time else 1.0
+        found = {"simulated_time": (self.time, "s"), "working_time": (working_time, "s"), "time_step": (self.time_step, "s"),
                  "critical_time_step": (self.critical_step, "s"), "bonded_critical_time_step": (self.bonded_step, "s"),
-                 "mean_cutting_force": (float(cutting.mean()), "N/m"), "peak_cutting_force": (float(cutting.max()), "N/m"),
-                 "mean_thrust_force": (float(columns.get("thrust_force", np.zeros(1)).mean()), "N/m"),
+                 "mean_cutting_force": (at_work * float(cutting.mean()), "N/m"), "peak_cutting_force": (float(cutting.max()), "N/m"),
+                 "mean_thrust_force": (at_work * float(thrust.mean()), "N/m"),
                  "specific_energy": (self.contact.work_done / area if area else 0.0, "J/m3"),
                  **self._worn_results(),
                  **self.bonds.log(), **{f"rock_{k}": value for k, value in self.rock.report().items()}}

@@ -95,8 +95,12 @@ def stage_table(run):
     """Forces, wear and temperature stage by stage."""
     stage = run.column("stage")
 
-    rows = [(stage_name(k), quantity(run.over_stage("cutting_force", np.mean, k), "N/m"),
-             quantity(run.over_stage("cutting_force", np.max, k), "N/m"), quantity(run.over_stage("thrust_force", np.mean, k), "N/m"),
+    def mean_at_work(name, k):
+        # Not over the time in which a worn tool comes to the rock.
+        return run.over_stage(name, np.mean, k) * run.over_stage("time", np.ptp, k) / run.over_stage("working_time", np.ptp, k)
+
+    rows = [(stage_name(k), quantity(mean_at_work("cutting_force", k), "N/m"),
+             quantity(run.over_stage("cutting_force", np.max, k), "N/m"), quantity(mean_at_work("thrust_force", k), "N/m"),
              percent(run.over_stage("mass_lost", np.max, k), 1.0),
              quantity(run.over_stage("tool_temperature_max", np.max, k), "K"))
             for k in np.unique(stage[np.isfinite(stage)]).astype(int)]
@@ -485,10 +489,18 @@ def draw_wear(run, axes, time):
     axes.plot(time, 100 * run.column("worn_volume") / whole, color=CRACK, label="worn by Archard's law")
     axes.set(ylabel="% of the tool")
     axes.legend(loc="upper left")
-    hours = run.parameter("acceleration", 0.0) / MS / 3600
-    if hours > 0:
-        upper = axes.secondary_xaxis("top", functions=(lambda t: t * hours, lambda t: t / hours))
-        upper.set_xlabel("time × acceleration / h")
+    if run.parameter("acceleration", 0.0) > 0:
+        add_working_hours(run, axes, time)
+
+
+def add_working_hours(run, axes, time):
+    """An upper axis of the hours that the accelerated wear stands for; they rest while a worn tool comes to the rock."""
+    hours = np.append(0.0, run.column("working_time")) * run.parameter("acceleration", 0.0) / 3600
+    time = np.append(0.0, time)
+    grows = np.append(True, np.diff(hours) > 0)
+    upper = axes.secondary_xaxis("top", functions=(lambda t: np.interp(t, time, hours),
+                                                   lambda h: np.interp(h, hours[grows], time[grows])))
+    upper.set_xlabel("working time × acceleration / h")
 
 
 def draw_hottest(run, axes, time):

@@ -198,6 +198,16 @@ def test_a_worn_tool_gets_the_time_to_come_to_the_rock(tmp_path):
     assert behind[2] >= behind[0] > 1e-3
     times = np.array([float(end["time"]) for end in ends])
     assert np.diff(times) == pytest.approx(8e-4 + behind[:-1] / 4.0, abs=2 * value(run, "time_step"))
+    # The way to the rock is no work: not in the time that wear stands for, nor in the rock that is cut.
+    working = SMALL["start_up"] + 3 * 8e-4
+    assert value(run, "working_time") == pytest.approx(working, abs=4 * value(run, "time_step"))
+    tool_work = run.summary["audits"]["energy"]["tool_work"]
+    assert value(run, "specific_energy") == pytest.approx(tool_work / (SMALL["depth_of_cut"] * 4.0 * working), rel=1e-3)
+    assert value(run, "mean_cutting_force") == pytest.approx(tool_work / (4.0 * working), rel=0.02)
+    record = history(run.out)
+    resting = np.diff(record["working_time [s]"], prepend=0) == 0
+    coming = [np.ptp(record["time [s]"][(record["stage [-]"] == n) & resting]) for n in range(1, len(ends))]
+    assert coming == pytest.approx(behind[:-1] / 4.0, abs=6e-5)
     stopped = interrupt(tmp_path / "out", signal.SIGTERM, 4, checkpoint_interval=0.01, **values)
     assert stopped.code == 128 + signal.SIGTERM
     assert_as_if_never_stopped(test_tooth(tmp_path / "out", "--resume", checkpoint_interval=0.01, **values), run)
