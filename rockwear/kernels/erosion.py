@@ -70,6 +70,7 @@ class Erosion:
     def wear(self, volume):
         """Add worn volume (n,) m3 and remove what is worn away. -> (removed, uncovered) lists of indices, in order.
 
+        All that are worn out go at once, and then those that their excess wears out, so that numbering decides nothing.
         With the conserving rule the excess goes in equal parts to the particles that a removal uncovers, or where it
         uncovers none to the nearest particles that are left: no volume is ever lost.
         """
@@ -77,33 +78,29 @@ class Erosion:
         self.worn += volume
         self.stored += volume
         removed, uncovered = [], []
-        worn_out = sorted(i for i in self.skin if self.stored[i] >= self.limit[i])
-        while worn_out:
-            i = worn_out.pop(0)
-            newly = self._take(i)
-            removed.append(i)
-            uncovered.extend(newly)
+        while worn_out := sorted(i for i in self.skin if self.stored[i] >= self.limit[i]):
+            newly = self._take(worn_out)
+            removed += worn_out
+            uncovered += newly
+            excess = (self.stored - self.volumes)[worn_out]
+            self.stored[worn_out] = 0.0
             if self.conserving:
-                self._pass_on(i, newly)
-                worn_out = sorted(j for j in self.skin if self.stored[j] >= self.limit[j])
-            else:
-                self.stored[i] = 0.0
+                self._pass_on(worn_out, excess, set(newly))
         return removed, [i for i in uncovered if self.alive[i]]
 
-    def _take(self, i):
-        self.alive[i] = False
-        self.skin.discard(i)
-        newly = [j for j in self._neighbours[i] if self.alive[j] and j not in self.skin]
+    def _take(self, worn_out):
+        self.alive[worn_out] = False
+        self.skin.difference_update(worn_out)
+        newly = sorted({j for i in worn_out for j in self._neighbours[i] if self.alive[j]} - self.skin)
         self.skin.update(newly)
         return newly
 
-    def _pass_on(self, i, newly):
-        excess, self.stored[i] = self.stored[i] - self.volumes[i], 0.0
-        heirs = newly or self._nearest_alive(i)
-        for j in heirs:
-            self.stored[j] += excess / len(heirs)
-        if not heirs:
-            self.beyond += excess
+    def _pass_on(self, worn_out, excess, newly):
+        for i, volume in zip(worn_out, excess):
+            heirs = [j for j in self._neighbours[i] if j in newly] or self._nearest_alive(i)
+            self.stored[heirs] += volume / max(1, len(heirs))
+            if not heirs:
+                self.beyond += float(volume)
 
     def _nearest_alive(self, i):
         """Living particles nearest to a removed one along contacts, over others that are gone."""
