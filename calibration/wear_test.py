@@ -104,6 +104,7 @@ class WearTest(scene.Scene):
         self.hardness = Hardness(table.kelvin - KELVIN, table.pascal / BRINELL)
         self.law = wear_law(v.wear_law, k=v.wear_coefficient, mu=v.tool_mu, exponent=v.wear_exponent,
                             modes=v.wear_modes)
+        require(v.acceleration > 0, "acceleration", v.acceleration, "greater than 0 for a block that is to wear")
         width = v.block_width or math.sqrt(v.area)
         self.pressure, self.load = v.force / v.area, v.force / v.area * width
         outline = np.array([(0, 0), (width, 0), (width, v.block_height), (0, v.block_height)])
@@ -201,7 +202,7 @@ class WearTest(scene.Scene):
         rise, rows = self.v.temperature_rise, self.hardness.kelvin
         bends = [] if rise == 0 else [(row - self.v.temperature) / rise * self.v.distance for row in rows]
         inside = [s for s in bends if 0 < s < distance] or None
-        return quad(lambda s: self.law.rate(self.pressure, self.hardness(self.temperature(s))), 0, distance,
+        return quad(lambda s: self.law.rate(self.pressure, self.hardness.nearest(self.temperature(s))), 0, distance,
                     points=inside, epsrel=1e-10)[0]
 
     @property
@@ -231,6 +232,9 @@ class WearTest(scene.Scene):
                 "simulated_time": (self.time, "s"), "pressure": (self.pressure, "Pa"), "block_width": (self.width, "m"),
                 "temperature_end": (self.temperature(self.slid), "K"), "mass_lost": (erosion.mass_fraction_lost, "-"),
                 "particles_removed": (int(np.sum(~erosion.alive)), "-"), "tool_particles": (self.tool.count, "-")}
+
+    def warnings(self):
+        return self.wear.warnings()
 
     def audits(self):
         """Friction: mu F s of the known load, and what became of it; mass: Archard's volume, and where it is."""

@@ -623,7 +623,7 @@ class Cutting(scene.Scene):
             return []
         short = [] if math.isfinite(self._foremost()) else [
             f"nothing of the tool is left below the rock's surface, of its lowest {self.v.depth_of_cut:g} m: it cuts no more"]
-        return short + self._distrust()
+        return [*short, *self.wear.warnings(), *self._distrust()]
 
     def _distrust(self):
         v, found = self.v, {name: value for name, (value, _) in self._trust().items()}

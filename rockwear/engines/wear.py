@@ -1,4 +1,6 @@
 """What the tool meets: forces, friction work and Archard wear of its skin, and the removal of its particles."""
+import math
+
 import numpy as np
 from yade import InsertionSortCollider, O, Vector3
 
@@ -203,6 +205,10 @@ class WearEngine(Engine):
         self.work_used += float(slid[WORK].sum())
         return slid
 
+    def warnings(self):
+        """Lines on what in this run's wear is not to be relied on."""
+        return []
+
     def state(self):
         return {"contact_energy_removed": self.contact_energy_removed, "work_used": self.work_used,
                 "events": self.events.copy(), "rubbed": self.rubbed.copy()}
@@ -223,6 +229,7 @@ class Wear(WearEngine):
         self.erosion, self.tool = erosion, tool
         self.hardness, self.temperature = hardness, temperature
         self.on_removal = on_removal
+        self.coldest, self.hottest = math.inf, -math.inf
 
     @property
     def worn(self):
@@ -236,7 +243,10 @@ class Wear(WearEngine):
         slid = self.take_slid()
         if slid is None:
             return
-        volume = self.law.volume(slid, self.hardness(self.temperature()), self.erosion.areas)
+        temperature = self.temperature()
+        met = temperature[self.rubbed]
+        self.coldest, self.hottest = min(self.coldest, float(met.min())), max(self.hottest, float(met.max()))
+        volume = self.law.volume(slid, self.hardness.nearest(temperature), self.erosion.areas)
         removed, uncovered = self.erosion.wear(volume)
         if removed:
             self._remove(removed, uncovered)
@@ -249,12 +259,21 @@ class Wear(WearEngine):
         self.tool.add([i for i in uncovered if self.erosion.alive[i]])
         self.on_removal(removed, loose)
 
+    def warnings(self):
+        """A line where what was worn had temperatures (K) beyond the table of hardness."""
+        if not self.hardness.leaves(self.coldest, self.hottest):
+            return []
+        first, last = self.hardness.limits
+        return [f"what wore, at {self.coldest:.1f} to {self.hottest:.1f} K, leaves the hardness table ({first:g} to {last:g} K): "
+                "the nearest row holds"]
+
     def state(self):
-        return {**super().state(), **self.erosion.state()}
+        return {**super().state(), **self.erosion.state(), "coldest": self.coldest, "hottest": self.hottest}
 
     def restore(self, state):
         super().restore(state)
         self.erosion.restore(state)
+        self.coldest, self.hottest = float(state["coldest"]), float(state["hottest"])
 
     def log(self):
         return {"mass_lost": (self.erosion.mass_fraction_lost, "-"),

@@ -44,9 +44,7 @@ class Hardness:
     @classmethod
     def constant(cls, pascal):
         """A hardness (Pa) that does not depend on temperature."""
-        table = cls([20.0], [positive("hardness", pascal, "Pa") / BRINELL])
-        table._warned = True
-        return table
+        return cls([20.0], [positive("hardness", pascal, "Pa") / BRINELL])
 
     @property
     def limits(self):
@@ -55,12 +53,21 @@ class Hardness:
 
     def __call__(self, kelvin):
         kelvin = np.asarray(kelvin, float)
-        if not self._warned and kelvin.size and (np.min(kelvin) < self.kelvin[0] or np.max(kelvin) > self.kelvin[-1]):
+        if not self._warned and kelvin.size and self.leaves(np.min(kelvin), np.max(kelvin)):
             self._warned = True
             warnings.warn(f"temperature {np.min(kelvin):.1f} to {np.max(kelvin):.1f} K leaves the hardness table "
                           f"({self.kelvin[0]:.1f} to {self.kelvin[-1]:.1f} K): the nearest row holds", stacklevel=2)
+        return self.nearest(kelvin)
+
+    def nearest(self, kelvin):
+        """The same without a warning, for those who ask `leaves` themselves."""
         found = np.interp(kelvin, self.kelvin, self.pascal)
         return float(found) if found.ndim == 0 else found
+
+    def leaves(self, low, high):
+        """True where temperatures (K) from low to high leave the table; a constant hardness has no end."""
+        first, last = self.limits
+        return first < last and (low < first or high > last)
 
 
 MET71 = Hardness([0, 200, 300, 400, 500, 600], [500, 491, 480, 439, 362, 241])

@@ -22,6 +22,8 @@ def test_outside_the_table_the_end_holds_with_one_warning():
     with pytest.warns(UserWarning, match="leaves the hardness table"):
         assert steel(1000.0) == 241 * BRINELL
     assert steel(200.0) == 500 * BRINELL
+    assert steel.leaves(200.0, 300.0) and steel.leaves(300.0, 900.0) and not steel.leaves(*steel.limits)
+    assert not Hardness.constant(5e9).leaves(1.0, 3000.0)
 
 
 @pytest.mark.parametrize("steel, depth, pressure, celsius, k", [

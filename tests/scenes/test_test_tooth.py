@@ -213,6 +213,14 @@ def test_a_worn_tool_gets_the_time_to_come_to_the_rock(tmp_path):
     assert_as_if_never_stopped(test_tooth(tmp_path / "out", "--resume", checkpoint_interval=0.01, **values), run)
 
 
+@pytest.mark.parametrize("celsius, lines", [(599.9, 1), (400, 0)])
+def test_wear_beyond_the_hardness_table_is_said_in_the_summary(tmp_path, celsius, lines):
+    run = test_tooth(tmp_path / "out", report="false", tool_temperature=celsius + 273.15, **TINY)
+    assert run.code == 0, run.stderr
+    assert sum("leaves the hardness table" in line for line in run.summary["warnings"]) == lines
+    assert run.stderr.count("leaves the hardness table") == lines
+
+
 def test_a_tool_that_does_not_reach_the_rock_any_more_says_so(tmp_path):
     spike = tmp_path / "spike.csv"
     spike.write_text("x,y\n-0.002,0\n0,0\n0,0.03\n-0.02,0.03\n-0.02,0.009\n-0.002,0.009\n", encoding="utf-8")
