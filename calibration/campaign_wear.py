@@ -3,7 +3,7 @@
     python3 -m calibration.campaign_wear DIR [CASE ...]            (make campaign-wear)
 
 All cases, or those named; two runs at a time, a folder a run. A campaign that was stopped goes on: finished runs stay,
-the others resume from their checkpoints. The last part cuts fresh rock with the shapes that the test tooth passed through
+the others resume from their checkpoints. The last part cuts fresh rock with the shapes that the ripper passed through
 (calibration.sharp_and_worn).
 """
 import sys
@@ -32,9 +32,15 @@ CASES = {
     "test tooth, 2e5, twice as deep": (TOOTH, dict(LONG, acceleration=2e5, depth_of_cut=0.016)),
     "test tooth, 7000": (TOOTH, dict(LONG, acceleration=7000)),
     "ripper, 7000": (RIPPER, dict(FEW_PICTURES)),
+    "test tooth, 2.5e4": (TOOTH, dict(LONG, acceleration=2.5e4, cycles=8)),
+    "test tooth, 5e4": (TOOTH, dict(LONG, acceleration=5e4, cycles=4)),
+    "test tooth, 1e5": (TOOTH, dict(LONG, acceleration=1e5, cycles=2)),
 }
-SAME_WORK = "test tooth, 2e5", "test tooth, 4e5", "test tooth, 8e5", "test tooth, 1.6e6"
-"""R's first rule: wear twice as fast and half as long, and that again. The shapes of the first are compared."""
+SAME_WORK = {"a hundredth": ("test tooth, 2.5e4", "test tooth, 5e4", "test tooth, 1e5"),
+             "a quarter": ("test tooth, 2e5", "test tooth, 4e5", "test tooth, 8e5", "test tooth, 1.6e6")}
+"""R's first rule: wear twice as fast and half as long, and that again, until so much of the tooth is worn off."""
+WORN = "ripper, 2e5"
+"""The run whose shapes cut fresh rock."""
 COARSE = dict(coarsening=3)
 """Rock graded threefold below the reach of the cut: half the time."""
 OF_M = 0.203, 40.0
@@ -116,24 +122,24 @@ def main(folder, *names):
         found = {name: future.result() for name, future in waiting.items()}
     with matplotlib.rc_context(plots.STYLE):
         mass_loss(found).savefig(folder / "mass_loss.png")
-        same_work = {name: found[name] for name in SAME_WORK if name in found}
-        if len(same_work) > 1:
-            acceleration(same_work).savefig(folder / "acceleration.png")
-    sections = [page.Section("How fast the tools wear", "Left as simulated, right over the time that the accelerated wear "
-                             "stands for: equal rates fall on one line. The star is M's test tooth.",
-                             [page.image(folder / "mass_loss.png"), wear_table(found)])]
-    if len(same_work) > 1:
-        sections.append(page.Section("Does acceleration change the wear?", "R: the same work at other factors must wear "
-                                     "alike.", [page.image(folder / "acceleration.png")]))
+        sections = [page.Section("How fast the tools wear", "Left as simulated, right over the time that the accelerated wear "
+                                 "stands for: equal rates fall on one line. The star is M's test tooth.",
+                                 [page.image(folder / "mass_loss.png"), wear_table(found)])]
+        for part, names in SAME_WORK.items():
+            same_work = {name: found[name] for name in names if name in found}
+            if len(same_work) > 1:
+                path = folder / f"acceleration_{part.replace(' ', '_')}.png"
+                acceleration(same_work).savefig(path)
+                sections.append(page.Section(f"Does acceleration change the wear? Until {part} of the tooth is gone",
+                                             "R: the same work at other factors must wear alike.", [page.image(path)]))
     for name, run in found.items():
         pieces = [page.image(run.path / "figures" / f"{figure}.png") for figure in ("shape", "wear", "trust")
                   if (run.path / "figures" / f"{figure}.png").exists()]
         sections.append(page.Section(name, "", pieces))
-    if same_work:
-        worn = next(iter(same_work.values()))
-        sharp_and_worn.main(worn.path, folder / "sharp_and_worn")
-        sections.append(page.Section("Sharp and worn", "The same rock cut by the tooth as it was new and as it wore; see "
-                                     "sharp_and_worn/report.html.",
+    if WORN in found:
+        sharp_and_worn.main(found[WORN].path, folder / "sharp_and_worn")
+        sections.append(page.Section("Sharp and worn", f"The same rock cut by the tool of {WORN}, as it was new and as it wore; "
+                                     "see sharp_and_worn/report.html.",
                                      [page.image(folder / "sharp_and_worn/sharp_and_worn.png")]))
     (folder / "report.html").write_text(page.document("wear", f"{len(found)} runs", sections), encoding="utf-8")
     print(folder / "report.html")

@@ -14,7 +14,7 @@ from .conftest import SMALL
 WEARING = dict(SMALL, start_up=8e-4, cycles=2, heat="false")
 SMALL_ROCK = {name: SMALL[name] for name in ("width", "height", "radius_min", "radius_max")}
 SEEDS = 1, 2
-CASES = {"test tooth, 2e5": dict(acceleration=4e5), "test tooth, 4e5": dict(acceleration=8e5, cycles=1)}
+CASES = {"ripper, 2e5": dict(acceleration=4e5), "twice as fast": dict(acceleration=8e5, cycles=1)}
 
 
 @pytest.fixture(scope="module")
@@ -26,6 +26,7 @@ def campaign(tmp_path_factory):
         with pytest.MonkeyPatch.context() as patch:
             patch.setattr(campaign_wear, "CASES", {
                 name: (campaign_wear.TOOTH, {**WEARING, **values}) for name, values in CASES.items()})
+            patch.setattr(campaign_wear, "SAME_WORK", {"a hundredth": tuple(CASES), "a quarter": ("test tooth, 9e9",)})
             patch.setattr(sharp_and_worn, "SHAPES", 2)
             patch.setattr(sharp_and_worn, "CUT", {**sharp_and_worn.CUT, **SMALL_ROCK, "start_up": 6e-4, "report": "false"})
             patch.setattr(sharp_and_worn, "main", partial(sharp_and_worn.main, seeds=SEEDS))
@@ -36,8 +37,9 @@ def campaign(tmp_path_factory):
 
 def test_the_page_shows_every_run(campaign):
     page = (campaign[0] / "report.html").read_text(encoding="utf-8")
-    for name in (*CASES, "How fast the tools wear", "Does acceleration change the wear?", "Sharp and worn"):
-        assert name in page
+    for words in (*CASES, "How fast the tools wear", "Until a hundredth of the tooth is gone", "Sharp and worn"):
+        assert words in page
+    assert "a quarter" not in page
 
 
 def test_what_the_figure_of_accelerations_compares(campaign):
