@@ -66,12 +66,16 @@ def acceleration(runs):
     for name, share in zip(runs, worn):
         along.step(plots.MM * PLACE * np.arange(len(share)), 100 * share / share.sum(), where="mid",
                    label=f"{name}: {1e6 * share.sum():.3g} mm² worn")
-    along.set(xlabel="way along the new outline / mm", ylabel="% of the worn volume")
+    reached = plots.MM * PLACE * np.flatnonzero(np.sum([share / share.sum() for share in worn], axis=0) > 1e-3)
+    along.set(xlabel="way along the new outline / mm", ylabel="% of the worn volume",
+              xlim=(reached.min() - 5, reached.max() + 5))
     along.legend(fontsize=8)
-    against.loglog(factors[1:], found, "o", color="#b5651d", label="difference from the slowest run")
-    against.loglog(factors[1:], 100 * np.hypot(errors[1:], errors[0]), "s-", color="#2c6e91",
+    against.semilogx(factors[1:], found, "o", color="#b5651d", label="difference from the slowest run")
+    against.semilogx(factors[1:], 100 * np.hypot(errors[1:], errors[0]), "s-", color="#2c6e91",
                    label="expected from both runs' own records")
-    against.set(xlabel="acceleration, at the same work", ylabel="difference of the distributions / %")
+    against.set(xlabel="acceleration, at the same work", ylabel="difference of the distributions / %", ylim=(0, None))
+    against.set_xticks(factors[1:], [f"{factor:g}" for factor in factors[1:]])
+    against.set_xticks([], minor=True)
     against.legend(fontsize=8)
     return figure
 

@@ -5,7 +5,7 @@ import numpy as np
 from matplotlib import colormaps
 from matplotlib.animation import PillowWriter
 from matplotlib.collections import LineCollection, PolyCollection
-from matplotlib.colors import LinearSegmentedColormap, LogNorm, to_rgba
+from matplotlib.colors import LinearSegmentedColormap, LogNorm, Normalize, to_rgba
 from matplotlib.patches import Patch
 
 from ..kernels import wear_statistics
@@ -47,7 +47,8 @@ def sections(run):
                 "Thin lines are the record, thick ones a running mean. Each cycle begins on the rock that the start-up "
                 "left. The upper axis of the wear is the time that the accelerated wear stands for.", [drawn(history)]),
         Section("Temperature", "Rise above the coldest start, on a logarithmic scale.", [drawn(temperature)]),
-        Section("Wear of the tooth", "Depth worn off each skin particle that is left, and the particles that are gone.",
+        Section("Wear of the tooth", "Depth worn off each skin particle that is left, and the particles that are gone, so "
+                "far.",
                 [drawn(wear)]),
         *trusted(run),
         Section("Shape of the tooth", "Dashed: the new tooth. Worn depth is the distance from the new contour to what "
@@ -335,29 +336,40 @@ def wear_limits(run, shot, margin=2.0):
     return left - aside, right + aside, bottom, top
 
 
+def worn_stages(run, most):
+    """{label: snapshot} to show wear at: the ends of the stages, or of equal spans of a single one."""
+    ends = {stage_of(run, k): k for k in run.stage_ends().values()}
+    if len(ends) > 1:
+        return {f"after {stage_name(stage)}": k for stage, k in spread(ends.items(), most)}
+    return {f"after {MS * run.times[k]:.3g} ms": k for k in spread(range(len(run.times)), most + 1)[-most:]}
+
+
 def wear(run):
-    """Worn depth of each particle at the end, and the particles that are gone."""
-    shot, model = run.snapshot(-1), run.model
-    limits = wear_limits(run, shot)
-    alive, gone, worn = shot["alive"], ~shot["alive"], shot["alive"] & (shot["worn_depth"] > 0)
-    figure, (axes,) = canvas(9, 7)
-    sound = alive & ~worn
-    discs(axes, model["tool_positions"][sound], model["tool_radii"][sound], facecolors="#dfe3e6", edgecolors="white")
-    discs(axes, model["tool_positions"][gone], model["tool_radii"][gone], facecolors="#f9dcdc", edgecolors="#e08a8a",
-          linewidths=0.6)
-    painted = discs(axes, model["tool_positions"][worn], model["tool_radii"][worn], array=MM * shot["worn_depth"][worn],
-                    cmap="YlOrRd", edgecolors="#777777", linewidths=0.4)
-    axes.plot(*MM * np.vstack([model["outline"], model["outline"][:1]]).T, color="black", linewidth=0.8)
-    frame(axes, limits, f"{int(gone.sum())} particles gone (pale red), {int(worn.sum())} being worn")
-    if worn.any():
-        figure.colorbar(painted, ax=axes, label="worn depth of the particle / mm", shrink=0.7)
+    """Worn depth of each particle, and the particles that are gone, at the end of four stages."""
+    shown, model = {label: run.snapshot(k) for label, k in worn_stages(run, 4).items()}, run.model
+    limits = wear_limits(run, list(shown.values())[-1])
+    norm = Normalize(0, MM * max(1e-6, *(shot["worn_depth"][shot["alive"]].max(initial=0) for shot in shown.values())))
+    columns = min(2, len(shown))
+    figure, panels = canvas(12, 5.4 * -(-len(shown) // columns), -(-len(shown) // columns), columns)
+    for axes in panels[len(shown):]:
+        axes.set_axis_off()
+    for (label, shot), axes in zip(shown.items(), panels):
+        alive, gone, worn = shot["alive"], ~shot["alive"], shot["alive"] & (shot["worn_depth"] > 0)
+        sound = alive & ~worn
+        discs(axes, model["tool_positions"][sound], model["tool_radii"][sound], facecolors="#dfe3e6", edgecolors="white")
+        discs(axes, model["tool_positions"][gone], model["tool_radii"][gone], facecolors="#f9dcdc", edgecolors="#e08a8a",
+              linewidths=0.6)
+        painted = discs(axes, model["tool_positions"][worn], model["tool_radii"][worn], array=MM * shot["worn_depth"][worn],
+                        cmap="YlOrRd", norm=norm, edgecolors="#777777", linewidths=0.4)
+        axes.plot(*MM * np.vstack([model["outline"], model["outline"][:1]]).T, color="black", linewidth=0.8)
+        frame(axes, limits, f"{label}: {int(gone.sum())} particles gone (pale red), {int(worn.sum())} being worn")
+    figure.colorbar(painted, ax=panels, label="worn depth of the particle / mm", shrink=0.7)
     return figure
 
 
 def shape(run):
-    """Outline at the end of each stage over the new one, and worn depth along the contour."""
-    ends = spread(run.stage_ends().values(), 8)
-    return worn_outlines(run, {f"after {stage_name(stage_of(run, k))}": k for k in ends})
+    """Outlines at the end of each stage over the new one, and worn depth along the contour."""
+    return worn_outlines(run, worn_stages(run, 8))
 
 
 def worn_outlines(run, shown):
@@ -495,8 +507,9 @@ def draw_wear(run, axes, time):
 
 def add_working_hours(run, axes, time):
     """An upper axis of the hours that the accelerated wear stands for; they rest while a worn tool comes to the rock."""
-    hours = np.append(0.0, run.column("working_time")) * run.parameter("acceleration", 0.0) / 3600
-    time = np.append(0.0, time)
+    hours = run.column("working_time") * run.parameter("acceleration", 0.0) / 3600
+    # From the first moment on, and at the same rate beyond the last.
+    hours, time = (np.concatenate([[0.0], values, 2 * values[-1:]]) for values in (hours, time))
     grows = np.append(True, np.diff(hours) > 0)
     upper = axes.secondary_xaxis("top", functions=(lambda t: np.interp(t, time, hours),
                                                    lambda h: np.interp(h, hours[grows], time[grows])))

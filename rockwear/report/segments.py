@@ -4,9 +4,9 @@ from matplotlib import colormaps
 
 from ..kernels.outline import contour, nearest_arc
 from . import shapes
-from .cutting import CRACK, cut, draw_cracks, draw_energy, draw_forces, moving_picture, stage_of, summary_line, trusted
+from .cutting import CRACK, cut, draw_cracks, draw_energy, draw_forces, moving_picture, summary_line, trusted, worn_stages
 from .page import Section, machine_tiles, percent, quantity, tiles
-from .plots import MM, MS, books, canvas, frame, mark_stages, save, spread, stage_name
+from .plots import MM, MS, books, canvas, frame, mark_stages, save
 
 
 def shows(run):
@@ -24,9 +24,9 @@ def sections(run):
         Section("Failure", "Red: broken bonds, drawn across the bond where its discs are still near each other. Blue: "
                 "chips, which no chain of bonds joins to the support. The darker a disc, the more of its bonds are gone.",
                 [drawn(cut), moving_picture(run)]),
-        Section("Wear along the tool", "Share of all wear that fell on each segment, per millimetre of the new outline: "
+        Section("Wear along the tool", "Volume worn off each segment so far, over its length when new, along the new outline: "
                 "zero at the lowest point, positive up the front; a tall single segment is one contact that slid under "
-                "load. Right: the same as a band on the tool.", [drawn(wear)]),
+                "load. Right: the same, at the end, as a band on the tool.", [drawn(wear)]),
         *trusted(run),
         *([Section("Shape of the tool", "Dashed: the new tool. Each point is a vertex.", [drawn(shape)])]
           if run.parameter("reshape", False) else []),
@@ -65,21 +65,21 @@ def along(run):
 
 
 def wear(run):
-    """Share of the wear along the outline at the end of each stage, and on the tool."""
+    """Depth worn off along the outline at several stages, and on the tool."""
     middle, length, normal, arc = along(run)
     free = ~run.model["tool_protected"][run.model["tool_facets"]].all(axis=1)
     order = np.argsort(arc)
     order = order[free[order]]
-    ends = spread(run.stage_ends().items(), 8)
+    shown = worn_stages(run, 8)
     figure, (profile, axes) = canvas(12, 5.4, 1, 2)
-    for (_, k), colour in zip(ends, colormaps["plasma"](np.linspace(0, 0.85, len(ends)))):
+    for (label, k), colour in zip(shown.items(), colormaps["plasma"](np.linspace(0, 0.85, len(shown)))):
         worn_volume = run.snapshot(k)["worn_volume"]
-        depth = 100 * worn_volume / max(worn_volume.sum(), 1e-300) / (MM * length)
+        depth = 1e6 * worn_volume / length
         profile.step(MM * arc[order], depth[order], where="mid", color=colour, linewidth=1.4,
-                     label=f"after {stage_name(stage_of(run, k))}")
+                     label=label)
     worn = MM * arc[order][depth[order] > 0.01 * depth.max()]
     left, right = (worn.min(), worn.max()) if len(worn) else (-5, 5)
-    profile.set(xlim=(left - 3, right + 3), xlabel="arc length from the tip / mm", ylabel="share of all wear / % per mm")
+    profile.set(xlim=(left - 3, right + 3), xlabel="arc length from the tip / mm", ylabel="worn volume over the new length / µm")
     profile.axvline(0, color="#999999", linewidth=0.8, linestyle=":")
     profile.legend(loc="upper left")
     model = run.model["tool_vertices"][shapes.loop(run.model["tool_facets"])]
@@ -98,15 +98,15 @@ def shape(run):
     """Outlines at the end of each stage: the whole tool, and where it is worn."""
     facets, first = run.model["tool_facets"], run.model["tool_vertices"]
     loop = np.append(shapes.loop(facets), shapes.loop(facets)[0])
-    ends = spread(run.stage_ends().items(), 8)
+    shown = worn_stages(run, 8)
     figure, panels = canvas(12, 6, 1, 2)
-    moved = np.linalg.norm(run.snapshot(ends[-1][1])["tool_vertices"] - first, axis=1)
+    moved = np.linalg.norm(run.snapshot(-1)["tool_vertices"] - first, axis=1)
     near = MM * first[moved > 0.02 * moved.max()] if moved.any() else MM * first[[first[:, 1].argmin()]]
     for axes in panels:
         axes.plot(*MM * first[loop].T, color="black", linewidth=1, linestyle="--")
-        for (_, k), colour in zip(ends, colormaps["plasma"](np.linspace(0, 0.85, len(ends)))):
+        for (label, k), colour in zip(shown.items(), colormaps["plasma"](np.linspace(0, 0.85, len(shown)))):
             axes.plot(*MM * run.snapshot(k)["tool_vertices"][loop].T, ".-", color=colour, linewidth=1.2, markersize=3,
-                      label=f"after {stage_name(stage_of(run, k))}")
+                      label=label)
     (left, low), (right, top) = MM * first.min(axis=0), MM * first.max(axis=0)
     frame(panels[0], (left - 2, right + 2, low - 2, top + 2), "outline")
     frame(panels[1], (near[:, 0].min() - 2, near[:, 0].max() + 2, near[:, 1].min() - 2, near[:, 1].max() + 2), "worn part")
