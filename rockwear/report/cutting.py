@@ -501,13 +501,14 @@ def draw_wear(run, axes, time):
     axes.plot(time, 100 * run.column("worn_volume") / whole, color=CRACK, label="worn by Archard's law")
     axes.set(ylabel="% of the tool")
     axes.legend(loc="upper left")
-    if run.parameter("acceleration", 0.0) > 0:
-        add_working_hours(run, axes, time)
+    add_working_hours(run, axes, time)
 
 
 def add_working_hours(run, axes, time):
     """An upper axis of the hours that the accelerated wear stands for; they rest while a worn tool comes to the rock."""
     hours = run.column("working_time") * run.parameter("acceleration", 0.0) / 3600
+    if not np.isfinite(hours + time).all() or not hours.max(initial=0) > 0:
+        return
     # From the first moment on, and at the same rate beyond the last.
     hours, time = (np.concatenate([[0.0], values, 2 * values[-1:]]) for values in (hours, time))
     grows = np.append(True, np.diff(hours) > 0)
