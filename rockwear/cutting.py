@@ -173,8 +173,6 @@ class Cutting(scene.Scene):
         self.foremost_when_new = self._foremost()
         self._choose_time_step(v)
         self._plan(self._stages(v))
-        self.leads = np.zeros(len(self.stages), int)
-        """Steps of each stage in which a worn tool comes to where the new one stood."""
         self.book = {"kinetic": 0.0, "elastic": 0.0, "contact_elastic": 0.0}
         self.cracks_of_past_cycles = []
 
@@ -238,6 +236,11 @@ class Cutting(scene.Scene):
     def _motion(self, v):
         x = -v.approach - self.tool.foremost(below=v.depth_of_cut + 2 * v.radius_max)
         return Straight(start=(x, v.height - v.depth_of_cut), velocity=(v.velocity * v.speed_up, 0.0))
+
+    def _plan(self, stages):
+        super()._plan(stages)
+        self.leads = np.zeros(len(self.stages), int)
+        """Steps of each stage in which a worn tool comes to where the new one stood."""
 
     def _path_time(self):
         """Seconds along the tool's path; the rock put back before a cycle puts back this clock too."""
