@@ -1,9 +1,9 @@
 """The same cut with a tool of particles and with one of segments: worn volume, and where along the tool it falls.
 
-    python3 -m calibration.two_tools FOLDER [FOLDER ...]
+    python3 -m calibration.two_tools FIGURE.png FOLDER [FOLDER ...]
 
 reads run folders of yade_scripts/test_tooth.py with --tool particles and --tool segments, some seeds each, and draws
-calibration/results/two_tools.png. M 9.2's tooth, 3 ms, coarsening 3, no heat, five seeds, friction on the tool over its work:
+the figure (calibration/results/two_tools.png is one). M 9.2's tooth, 3 ms, coarsening 3, no heat, five seeds, friction on the tool over its work:
 
     particles  shape kept (--removal none)   9.3 +- 1.2 %      segments  shape kept (--reshape false)  10.5 +- 2.0 %
                7000 times                    7.5 +- 1.2 %                70 times                      10.4 +- 2.3 %
@@ -16,7 +16,6 @@ recedes with every update, away from what presses on it, and at 7000 times by se
 keep their place until they are worn away.
 """
 import sys
-from pathlib import Path
 
 import matplotlib
 import numpy as np
@@ -100,8 +99,8 @@ def figure(groups):
     return drawn
 
 
-def main(folders):
-    """Draw the figure and print a line a group."""
+def main(path, folders):
+    """Draw the figure at `path` and print a line a group."""
     groups = grouped(map(RunFolder, folders))
     for (tool, factor), runs in groups.items():
         share, its_error = scatter([100 * share_of_friction(run) for run in runs])
@@ -109,9 +108,11 @@ def main(folders):
         print(f"{tool}, {f'{factor:g} times' if factor else 'shape kept'}: friction {share:.3g} +- {its_error:.2g} % of the "
               f"tool's work, worn at 1 times {worn:.3g} +- {error:.2g} um2, {len(runs)} seeds")
     with matplotlib.rc_context(plots.STYLE):
-        figure(groups).savefig(Path(__file__).parent / "results" / "two_tools.png", dpi=80)
+        figure(groups).savefig(path, dpi=80)
 
 
 if __name__ == "__main__":
     matplotlib.use("Agg")
-    main(sys.argv[1:])
+    if len(sys.argv) < 3:
+        sys.exit(__doc__)
+    main(sys.argv[1], sys.argv[2:])

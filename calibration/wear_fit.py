@@ -91,7 +91,7 @@ def _measured(row, mu, brinell):
     friction = mu * pressure
     if "friction" in row:
         require("force" in row, "force", "nothing", "given with friction")
-        friction = pressure * positive("friction", row["friction"], "N") / row["force"]
+        friction = pressure * positive("friction", row["friction"], "N") / positive("force", row["force"], "N")
     hardness, error = _hardness(row, brinell)
     return pressure, friction, row["distance"], row["depth"], hardness, float(np.hypot.reduce([*relative, error]))
 

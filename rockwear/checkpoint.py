@@ -41,7 +41,8 @@ def _unflatten(flat):
     return tree
 
 
-def _digest(file):
+def digest(file):
+    """SHA-256 of a file's bytes, in hexadecimal."""
     return hashlib.sha256(file.read_bytes()).hexdigest()
 
 
@@ -61,7 +62,7 @@ def save(folder, *, identity, state, write_scenes):
         write_scenes(directory)
         np.savez(directory / "state.npz", **dict(_flatten(state)))
         _check_whole(directory)
-        files = {file.name: _digest(file) for file in sorted(directory.iterdir())}
+        files = {file.name: digest(file) for file in sorted(directory.iterdir())}
         pointer = folder / "current.json.new"
         pointer.write_text(json.dumps({"format": FORMAT, "set": number, "files": files, "identity": identity}, indent=1), encoding="utf-8")
         for file in [*directory.iterdir(), pointer]:
@@ -102,13 +103,15 @@ def load(folder, identity):
         raise CheckpointError(folder, "whole: current.json cannot be read") from None
     if not isinstance(current, dict) or current.get("format") != FORMAT:
         raise CheckpointError(folder, f"of the format '{FORMAT}'")
+    if not isinstance(current.get("identity"), dict) or not isinstance(current.get("files"), dict) or "set" not in current:
+        raise CheckpointError(folder, "whole: current.json lacks some of identity, files and set")
     for name, expected in identity.items():
         found = current["identity"].get(name)
         if found != expected:
             raise CheckpointError(folder, f"of the same {name}: {_difference(found, expected)}")
     directory = folder / str(current["set"])
-    for name, digest in current["files"].items():
-        if not (directory / name).is_file() or _digest(directory / name) != digest:
+    for name, written in current["files"].items():
+        if not (directory / name).is_file() or digest(directory / name) != written:
             raise CheckpointError(folder, f"whole: {name} is missing or damaged")
     with np.load(directory / "state.npz") as flat:
         return _unflatten(dict(flat)), directory

@@ -16,7 +16,7 @@ from .engines.record import Recorder, RunEnded, Watch
 from .engines.wear import ToolContact, Wear, WearProfile
 from .kernels.archard import BRINELL, KELVIN, MET71, MET91, Hardness
 from .kernels.bond_laws import LINEAR_LAWS, linear_law
-from .kernels.checks import require
+from .kernels.checks import ParameterError, require
 from .kernels.conduction import PATHS, HeatNetwork, calibrated_conductance, effusivity, effusivity_share, paths
 from .kernels.erosion import REMOVAL
 from .kernels.outline import read_outline, tooth
@@ -25,11 +25,13 @@ from .kernels.stability import critical_time_step
 from .kernels.wear_laws import LAWS, wear_law
 from .kernels.wear_statistics import distribution_error, events_per_particle, places, trusted_acceleration
 from .materials import Material
-from .parameters import Parameter, above_zero, choice, flag, integer, number, text
+from .parameters import Parameter, above_zero, choice, file, flag, integer, number, text
 from .rock import Specimen
 from .tool import Tool
 
 HARDNESS = {"MET71": MET71, "MET91": MET91}
+MOST_HEAT_STEPS = 1000
+"""Into which the time between two visits may have to be divided."""
 GUIDE_PERIOD = 100
 """Steps N between the corners of a curved path, which chords leave by (v dt N)^2 / 8R: 23 nm at P's pick (5.7 m/s, 0.7 m)."""
 PROFILE_PERIOD = 10
@@ -63,7 +65,7 @@ PARAMETERS = [
     Parameter("rake", 0.0, "deg", number(-80, 80), "rake angle, from the vertical", "ours"),
     Parameter("clearance", 3.0, "deg", number(0, 80), "clearance angle, from the horizontal", "ours"),
     Parameter("tip_radius", 4e-3, "m", above_zero, "rounding of the tip", "ours"),
-    Parameter("outline", "", "", text, "CSV file of x, y in m: a tooth of your own in place of the five above"),
+    Parameter("outline", "", "", file, "CSV file of x, y in m: a tooth of your own in place of the five above"),
     Parameter("tool_radius_min", 0.4e-3, "m", above_zero, "smallest radius of tool particles", "M 9.2"),
     Parameter("tool_radius_max", 0.52e-3, "m", above_zero, "largest radius of tool particles", "M 9.2"),
     Parameter("tool_kn", 90e9, "N/m", above_zero, "normal stiffness of the tool-rock contact", "M 9.2"),
@@ -177,11 +179,20 @@ class Cutting(scene.Scene):
         self.cracks_of_past_cycles = []
 
     def _outline(self, v):
-        vertices = read_outline(v.outline) if v.outline else tooth(
-            height=v.tooth_height, width=v.tooth_width, rake=math.radians(v.rake), clearance=math.radians(v.clearance),
-            tip_radius=v.tip_radius)
+        vertices = read_outline(v.outline) if v.outline else self._tooth(v)
         # The depth of cut counts from the lowest point, wherever a file has its origin.
         return vertices - [0.0, vertices[:, 1].min()]
+
+    def _tooth(self, v):
+        try:
+            return tooth(height=v.tooth_height, width=v.tooth_width, rake=math.radians(v.rake),
+                         clearance=math.radians(v.clearance), tip_radius=v.tip_radius)
+        except ParameterError as error:
+            # The kernel's words for them, and its radians, are not those of the scene.
+            if error.unit == "rad":
+                raise ParameterError(error.name, getattr(v, error.name), error.rule, "deg") from None
+            name = {"height": "tooth_height", "width": "tooth_width"}.get(error.name, error.name)
+            raise ParameterError(name, error.value, error.rule, error.unit) from None
 
     def _law(self, v):
         return linear_law(v.law, kn=v.kn, kt=v.kt, Rn=v.Rn, Rt=v.Rt, H=v.H, mu=v.mu)
@@ -290,6 +301,9 @@ class Cutting(scene.Scene):
         self.path_start = O.iter
         if self.heat:
             self.heat.begin()
+            longest = MOST_HEAT_STEPS * self.heat.network.stable_step()
+            require(v.heat_period <= longest, "heat_period", v.heat_period,
+                    f"at most {MOST_HEAT_STEPS} stable heat steps, {longest:.3g} s with these conductivities and capacities", "s")
         self.base = self._stored_energy()
         self.canonical()
 

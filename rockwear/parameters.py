@@ -66,6 +66,11 @@ def text(name, value, unit):
     return str(value)
 
 
+def file(name, value, unit):
+    """A rule: the path of a file, or nothing; what is in it the scene looks at."""
+    return str(value)
+
+
 @dataclass(frozen=True)
 class Parameter:
     """One number of a scene: its name, default, unit, rule, meaning, and where the default comes from."""

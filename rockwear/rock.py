@@ -62,6 +62,8 @@ def pack_uniform(box, *, radius_min, radius_max, **common):
     count = box[0] * box[1] / area
     if not count > TILE:
         return packing.pack(box=box, radius_min=radius_min, radius_max=radius_max, **common)
+    require(count <= packing.MAX_PARTICLES, "radius_min", radius_min,
+            f"large enough for at most {packing.MAX_PARTICLES} particles", "m")
     side = math.sqrt(TILE * area)
     repeats = [math.ceil(length / side) for length in box]
     part = packing.pack(box=tuple(length / n for length, n in zip(box, repeats)), periodic=(True, True),

@@ -15,7 +15,7 @@ import yade
 
 from . import __version__, checkpoint, parameters, report
 from .engines.record import RunEnded, write_table
-from .kernels.checks import ParameterError
+from .kernels.checks import ParameterError, require
 from .parameters import Parameter, above_zero, flag, text
 
 COMMON = [
@@ -26,6 +26,10 @@ COMMON = [
     Parameter("report", True, "", flag, "write report.html and its figures at the end"),
     Parameter("vtk", False, "", flag, "write each snapshot for ParaView too"),
 ]
+OURS = "snapshots", "checkpoint", "figures", "vtk"
+"""Folders that a new run empties."""
+MOST_STEPS = 1e10
+"""In all: more than a month of computing."""
 NOT_IDENTITY = {"out", "resume", "checkpoint_interval", "report", "vtk"}
 
 
@@ -44,11 +48,11 @@ def main(name, declared, make_scene):
     began = time.time()
     try:
         values = parameters.read(declared, sys.argv[1:])
-        folder = _folder(name, values)
+        folder, identity = _folder(name, values), _identity(name, values, declared)
         if values["resume"]:
-            checkpoint.load(folder / "checkpoint", _identity(name, values))
+            checkpoint.load(folder / "checkpoint", identity)
         scene = make_scene(values)
-        run = Run(name, scene, values, folder, began)
+        run = Run(name, scene, values, folder, identity, began)
         run.prepare()
     except ParameterError as error:
         print(f"error: {error}", file=sys.stderr)
@@ -63,9 +67,12 @@ def _leave(code):
     os._exit(code)
 
 
-def _identity(name, values):
+def _identity(name, values, declared):
+    """What a run must share with the checkpoint that it goes on from: the contents of its files too."""
+    files = [p.name for p in declared if p.rule is parameters.file and values[p.name]]
     return {"scene": name, "yade": yade.config.version, "rockwear": __version__,
-            "parameters": {k: v for k, v in values.items() if k not in NOT_IDENTITY}}
+            "parameters": {k: v for k, v in values.items() if k not in NOT_IDENTITY},
+            "files": {name: checkpoint.digest(Path(values[name])) for name in files if Path(values[name]).is_file()}}
 
 
 def _folder(name, values):
@@ -74,18 +81,27 @@ def _folder(name, values):
     if row is not None:
         folder = folder / row
     existing = folder
-    while not existing.exists():
-        existing = existing.parent
-    if not existing.is_dir() or not os.access(existing, os.W_OK):
+    try:
+        while not existing.exists():
+            existing = existing.parent
+        writable = existing.is_dir() and os.access(existing, os.W_OK)
+    except OSError as error:
+        raise ParameterError("out", str(folder), f"a folder that can be written ({error.strerror})") from None
+    if not writable:
         raise ParameterError("out", str(folder), "a folder that can be written")
+    # A run replaces an earlier one in its folder, but nothing that is not a run's.
+    foreign = [old for old in (*OURS, "report.html") if (folder / old).exists()]
+    if foreign and not (folder / "model.npz").exists():
+        raise ParameterError("out", str(folder), f"a folder of runs: {', '.join(foreign)} there would be replaced")
     return folder
 
 
 class Run:
     """Leads a scene through its stages and keeps its folder."""
 
-    def __init__(self, name, scene, values, folder, began):
+    def __init__(self, name, scene, values, folder, identity, began):
         self.name, self.scene, self.values, self.folder, self.began = name, scene, values, folder, began
+        self.identity = identity
         self.stopped_by = None
         self.snapshots = 0
         self.next_snapshot = 0.0
@@ -94,22 +110,26 @@ class Run:
 
     def prepare(self):
         """Make the folder and the scene, fresh or from the checkpoint."""
+        steps = float(sum(steps for _, steps in self.scene.stages))
+        require(steps <= MOST_STEPS, "steps", steps, f"at most {MOST_STEPS:g} of {self.scene.time_step:g} s in all: shorten "
+                "the times of the scene")
+        if not self.values["resume"]:
+            self.scene.build()
         try:
             (self.folder / "snapshots").mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise ParameterError("out", str(self.folder), f"a folder that can be written ({error.strerror})") from None
         if self.values["resume"]:
-            state, directory = checkpoint.load(self.folder / "checkpoint", _identity(self.name, self.values))
+            state, directory = checkpoint.load(self.folder / "checkpoint", self.identity)
             self.scene.restore(state["scene"], directory, self.folder)
             self.snapshots, self.next_snapshot = int(state["snapshots"]), float(state["next_snapshot"])
             self.wall_before = float(state["wall_time"])
         else:
-            for old in ("snapshots", "checkpoint", "figures", "vtk"):
+            for old in OURS:
                 shutil.rmtree(self.folder / old, ignore_errors=True)
             for old in ("summary.json", "history.csv", "cracks.csv", "turns.csv", "report.html"):
                 (self.folder / old).unlink(missing_ok=True)
             (self.folder / "snapshots").mkdir()
-            self.scene.build()
             np.savez_compressed(self.folder / "model.npz", **self.scene.model())
         self.setup_time = time.time() - self.began
 
@@ -208,7 +228,7 @@ class Run:
         begin = time.time()
         state = {"scene": self.scene.state(), "snapshots": self.snapshots, "next_snapshot": self.next_snapshot,
                  "wall_time": self.wall_before + time.time() - self.began}
-        checkpoint.save(self.folder / "checkpoint", identity=_identity(self.name, self.values), state=state,
+        checkpoint.save(self.folder / "checkpoint", identity=self.identity, state=state,
                         write_scenes=lambda directory: self.scene.save(directory, self.folder))
         self.checkpoint_time += time.time() - begin
 

@@ -332,6 +332,10 @@ class FacetBodies(ToolBodies):
             setattr(self, name, state[name].copy())
 
 
+NEVER = 2**62
+"""Steps that no run has."""
+
+
 class Scene:
     """What rockwear.run leads: bonded rock with engines, in stages of steps, over canonical points, into checkpoints.
 
@@ -358,7 +362,7 @@ class Scene:
 
     def _steps(self, seconds):
         """Steps in so many seconds of the process."""
-        return round(seconds / (self.time_step * self.speed_up))
+        return round(min(seconds / (self.time_step * self.speed_up), NEVER))
 
     def _enlist(self, *live):
         """Make these engines the scene's own; None stands for one that it does not need."""

@@ -57,6 +57,11 @@ def test_refusals_say_why(tmp_path):
     file.write_bytes(file.read_bytes()[:-1])
     with pytest.raises(checkpoint.CheckpointError, match="state.npz is missing or damaged"):
         checkpoint.load(tmp_path, IDENTITY)
+    whole = json.loads((tmp_path / "current.json").read_text(encoding="utf-8"))
+    for name in ("identity", "files", "set"):
+        (tmp_path / "current.json").write_text(json.dumps({k: v for k, v in whole.items() if k != name}), encoding="utf-8")
+        with pytest.raises(checkpoint.CheckpointError, match="lacks some of identity, files and set"):
+            checkpoint.load(tmp_path, IDENTITY)
     (tmp_path / "current.json").write_text(json.dumps({"format": "another"}), encoding="utf-8")
     with pytest.raises(checkpoint.CheckpointError, match="of the format"):
         checkpoint.load(tmp_path, IDENTITY)

@@ -175,10 +175,10 @@ def tooth(*, height, width, rake, clearance, tip_radius):
     height, width = positive("height", height, "m"), positive("width", width, "m")
     rake, clearance = finite("rake", rake, "rad"), not_negative("clearance", clearance, "rad")
     tip_radius = not_negative("tip_radius", tip_radius, "m")
-    require(abs(rake) < math.pi / 2, "rake", rake, "between -pi/2 and pi/2, both excluded", "rad")
-    require(clearance < math.pi / 2, "clearance", clearance, "less than pi/2", "rad")
+    require(abs(rake) < math.pi / 2, "rake", rake, "between -90 and 90 degrees, both excluded", "rad")
+    require(clearance < math.pi / 2, "clearance", clearance, "less than 90 degrees", "rad")
     wedge = math.pi / 2 - rake - clearance
-    require(wedge > 0, "rake", rake, f"less than pi/2 - clearance = {math.pi / 2 - clearance:g}", "rad")
+    require(wedge > 0, "rake", rake, f"less than 90 degrees less the clearance, {90 - math.degrees(clearance):g}", "rad")
 
     # outward normals of the two faces; the arc turns from one to the other
     first, last = -math.pi / 2 - clearance, rake

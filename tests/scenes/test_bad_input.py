@@ -33,7 +33,8 @@ CASES = [
     ({"depth_of_cut": 1e-3}, "depth_of_cut = 0.001 m: must be more than a rock particle"),
     ({"tooth_width": 0.08}, "tooth_width = 0.08"),
     ({"tooth_height": 0.05}, "tooth_height = 0.05"),
-    ({"rake": 79, "clearance": 20}, "rake = "),
+    ({"rake": 79, "clearance": 20}, "rake = 79 deg: must be less than 90 degrees less the clearance, 70"),
+    ({"rake": -80}, "tooth_width = 0.02 m: must be greater than"),
     ({"tip_radius": 0.05}, "tip_radius = 0.05 m: must be"),
     ({"tool_radius_min": 0.6e-3}, "tool_radius_max = 0.00052 m: must be at least tool_radius_min"),
     ({"tool_radius_max": 2e-3}, "tool_radius_max = 0.002 m: must be at most the rock's radius_min"),
@@ -49,10 +50,13 @@ CASES = [
     ({"time_step": 1e-5}, "time_step = 1e-05 s: must be at most the stable step"),
     ({"time_step_fraction": 1.5}, "time_step_fraction = 1.5: must be at most 1"),
     ({"sampling_period": 0}, "sampling_period = 0 steps: must be a whole number of at least 1"),
+    ({"tool_specific_heat": 1e-6}, "heat_period = 0.0001 s: must be at most 1000 stable heat steps"),
+    ({"kn": 1e300, "heat": "false"}, "must be at most 1e+10 of"),
     ({"heat_period": 0}, "heat_period = 0 s: must be greater than 0"),
     ({"heat": "maybe"}, "heat = maybe: must be true or false"),
     ({"checkpoint_interval": 0}, "checkpoint_interval = 0 s: must be greater than 0"),
     ({"velocty": 4}, "velocty = 4: must be a parameter of this scene; did you mean velocity"),
+    ({"out": 300 * "n"}, "nnn: must be a folder that can be written (File name too long)"),
     ({"out": "/proc/nowhere"}, "out = /proc/nowhere: must be a folder that can be written"),
     ({"resume": "true"}, "must be an existing checkpoint: there is none to resume from"),
 ]
@@ -89,6 +93,23 @@ def test_bad_outline(rows, expected, tmp_path):
     run = run_script(SCRIPT, *arguments({**SMALL, "out": tmp_path / "out", "outline": file}))
     one_line(run, expected)
     assert os.listdir(tmp_path) == ["tooth.csv"]
+
+
+def test_a_run_replaces_nothing_that_is_not_a_runs(tmp_path):
+    thesis = tmp_path / "out/figures/thesis.png"
+    thesis.parent.mkdir(parents=True)
+    thesis.write_bytes(b"mine")
+    one_line(run_script(SCRIPT, *arguments({**SMALL, "out": tmp_path / "out"})), "figures there would be replaced")
+    assert thesis.read_bytes() == b"mine"
+
+
+def test_a_checkpoint_belongs_to_the_contents_of_its_files(tmp_path):
+    file, out = tmp_path / "tooth.csv", tmp_path / "out"
+    values = {**SMALL, "start_up": 1e-4, "cycles": 0, "heat": "false", "report": "false", "outline": file, "out": out}
+    file.write_text("0,0\n0,0.03\n-0.02,0.03\n-0.02,0.005\n", encoding="utf-8")
+    assert run_script(SCRIPT, *arguments(values)).code == 0
+    file.write_text("0,0\n0,0.03\n-0.02,0.03\n-0.02,0.006\n", encoding="utf-8")
+    one_line(run_script(SCRIPT, *arguments(values), "--resume"), "of the same files: outline is ")
 
 
 def test_help_lists_every_parameter_with_its_source():
