@@ -115,15 +115,15 @@ PARAMETERS = [
     Parameter("ambient_temperature", 293.15, "K", number(0), "of the air", "M 9.2"),
     Parameter("rock_temperature", 293.15, "K", number(0), "of the rock at first", "M 9.2"),
     Parameter("tool_temperature", 293.15, "K", number(0), "of the tool at first", "M 9.2"),
-    # accuracy against speed: defaults from make bench
+    # accuracy against speed
     Parameter("time_step_fraction", 0.8, "", number(1e-4, 1), "time step over the critical one", "make bench"),
     Parameter("time_step", 0.0, "s", number(0), "time step itself; 0: by time_step_fraction"),
     Parameter("sampling_period", 1, "steps", integer(1), "between samples of the tool's contacts", "make bench"),
     Parameter("rock_sampling_period", 4, "steps", integer(1), "between samples of sliding rock contacts", "make bench"),
     Parameter("wear_period", 100, "steps", integer(1), "between updates of wear and removal", "make bench"),
     Parameter("heat_period", 1e-4, "s", above_zero, "between heat steps, each divided as stability asks", "make bench"),
-    Parameter("surface_period", 5e-4, "s", above_zero, "between searches for free surface and open cracks", "make bench"),
-    Parameter("damping_period", 500, "steps", integer(1), "between visits of the background damping", "make bench"),
+    Parameter("surface_period", 5e-4, "s", above_zero, "between searches for free surface and open cracks"),
+    Parameter("damping_period", 500, "steps", integer(1), "between visits of the background damping"),
     Parameter("record_period", 2e-5, "s", above_zero, "between rows of history.csv"),
 ]
 
