@@ -25,6 +25,8 @@ def test_uncovered_particles_come_without_a_push():
     is in the book."""
     found = removal(acceleration=3e6, start_up=2e-3)
     assert found["removed"] > 50 and found["overlaps"] == [] and found["unlisted"] == []
+    # The force that they meet rock with at last is that of an approach from outside.
+    assert 0 < max(found["pushes"]) < 1.01
     books_close(found["audits"])
     assert 0 < found["audits"]["energy"]["removed_contacts"] < 0.1 * found["audits"]["energy"]["tool_work"]
 

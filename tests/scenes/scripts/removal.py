@@ -3,6 +3,7 @@
     yade -n -x removal.py --saw false|true [--name value ...]      writes one line of JSON
 """
 import json
+import math
 import os
 import sys
 
@@ -11,7 +12,7 @@ sys.path.insert(0, ROOT)
 
 import numpy as np  # noqa: E402
 from scipy.spatial import cKDTree  # noqa: E402
-from yade import InsertionSortCollider, O  # noqa: E402
+from yade import InsertionSortCollider, NewtonIntegrator, O, PyRunner  # noqa: E402
 
 from rockwear import engines, parameters  # noqa: E402
 from rockwear.cutting import PARAMETERS, Cutting  # noqa: E402
@@ -48,7 +49,25 @@ def spy(add):
     def watched(indices):
         add(indices)
         found.extend(o for o in overlaps(indices) if o > 0)
+        newcomers.update(scene.bodies.body_of[int(i)] for i in indices)
     return watched
+
+
+def watch_newcomers():
+    """The force of each uncovered particle in the step in which it first meets rock, over the most that an approach from
+    outside may bring: what a step's way loads the spring by, and the dashpot."""
+    for body in sorted(newcomers):
+        if not O.bodies[body]:
+            newcomers.remove(body)
+            continue
+        force = O.forces.f(body).norm()
+        if force > 0:
+            newcomers.remove(body)
+            most = 0.0
+            for contact in O.interactions.withBody(body):
+                speed, phys = contact.geom.incidentVel(contact, False).norm(), contact.phys
+                most += (phys.kn * O.dt + phys.cn) * speed * math.hypot(1, phys.tangensOfFrictionAngle)
+            pushes.append(force / most)
 
 
 def unseen():
@@ -60,8 +79,11 @@ def unseen():
 
 SAW = Parameter("saw", False, "", flag, "saw the tooth in two half-way")
 values = parameters.read([*PARAMETERS, SAW], sys.argv[1:])
-scene, found = Cutting(values), []
+scene, found, newcomers, pushes = Cutting(values), [], set(), []
 scene.build()
+# Before the integrator, which changes the speeds that the forces come from.
+before = next(k for k, engine in enumerate(O.engines) if isinstance(engine, NewtonIntegrator))
+O.engines = O.engines[:before] + [PyRunner(command="watch_newcomers()", iterPeriod=1)] + O.engines[before:]
 scene.bodies.add = spy(scene.bodies.add)
 sawn = not values["saw"]
 below, unlisted = [], set()
@@ -80,7 +102,7 @@ scene.wear.act()
 if scene.heat:
     scene.heat.act()
 audits = {name: book for name, (book, _) in scene.audits().items()}
-print("JSON" + json.dumps({"removed": int(np.sum(~scene.tool.erosion.alive)), "overlaps": found, "below": below, "unlisted": sorted(unlisted),
+print("JSON" + json.dumps({"removed": int(np.sum(~scene.tool.erosion.alive)), "overlaps": found, "pushes": pushes, "below": below, "unlisted": sorted(unlisted),
                            "audits": audits, "stored_heat": float(scene.heat.network.heat_content)},
                           default=lambda x: x.item()))
 sys.stdout.flush()
