@@ -13,7 +13,7 @@ import matplotlib
 import numpy as np
 
 from calibration import sharp_and_worn
-from calibration.runs import Runs
+from calibration.runs import RunFailed, Runs
 from rockwear.kernels.wear_statistics import PLACE, difference
 from rockwear.report import page, plots
 from rockwear.report.folder import read_history
@@ -151,4 +151,9 @@ def main(folder, *names):
 
 if __name__ == "__main__":
     matplotlib.use("Agg")
-    main(*sys.argv[1:])
+    if len(sys.argv) < 2:
+        sys.exit(__doc__)
+    try:
+        main(*sys.argv[1:])
+    except RunFailed as error:
+        sys.exit(f"campaign_wear: {error}")

@@ -170,4 +170,6 @@ def write_page(folder, teeth, rows):
 
 if __name__ == "__main__":
     matplotlib.use("Agg")
+    if len(sys.argv) < 3:
+        sys.exit(__doc__)
     main(sys.argv[1], sys.argv[2], tuple(map(int, sys.argv[3:])) or SEEDS)

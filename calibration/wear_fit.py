@@ -61,6 +61,7 @@ def _row(row, line, brinell):
         if not text.strip():
             continue
         value = finite(f"{name} in line {line}", text, unit)
+        require(value >= 0 or not name.endswith(" error"), f"{name} in line {line}", value, "at least 0", unit)
         if unit == "degC" and quantity == name:
             value += KELVIN
         found[name] = value * (brinell if unit == "HB" else UNITS[quantity][unit])

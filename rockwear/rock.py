@@ -85,6 +85,8 @@ class Specimen:
                  fine_depth=0.035, density):
         positive("width", width, "m"), positive("height", height, "m")
         not_negative("bonding_gap", bonding_gap, "m")
+        require(bonding_gap <= radius_min, "bonding_gap", bonding_gap,
+                f"at most radius_min = {radius_min:g}: bonds join neighbours", "m")
         within("coarsening", coarsening, 1, 8)
         positive("fine_depth", fine_depth, "m")
         self.width, self.height = width, height
@@ -198,6 +200,7 @@ class Block(Specimen):
     def __init__(self, *, width, height, depth, radius, porosity, seed, bonding_gap, density, bonded=True):
         box = positive("width", width, "m"), positive("height", height, "m"), positive("depth", depth, "m")
         not_negative("bonding_gap", bonding_gap, "m")
+        require(bonding_gap <= radius, "bonding_gap", bonding_gap, f"at most radius = {radius:g}: bonds join neighbours", "m")
 
         def make():
             made = packing.pack(box=box, radius_min=radius, radius_max=radius, porosity=porosity, seed=seed, jammed=bonded)

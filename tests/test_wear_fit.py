@@ -81,6 +81,8 @@ def test_command_line_leaves_numbers_and_a_figure(tmp_path, capsys):
     ("steel,pressure [Pa],distance [m],depth [mm],temperature [K]\nMET71,1e6,1,1,1400\n", "temperature = 1400 K"),
     ("steel,pressure [Pa],distance [m],depth [mm],temperature [K]\nX12,1e6,1,1,400\n", "steel = X12"),
     ("steel,pressure [Pa],distance [m],depth [mm],temperature [K]\nMET71,1e6,1,-1,400\n", "depth = -0.001 m: must be"),
+    ("steel,pressure [Pa],distance [m],depth [mm],temperature [K],depth error [mm]\nMET71,1e6,1,1,400,-0.1\n",
+     "depth error in line 2 = -0.1 mm: must be at least 0"),
     ("steel,force [N],distance [m],depth [mm],temperature [K]\nMET71,1e6,1,1,400\n", "area = nothing"),
     ("steel,pressure [Pa],depth [mm],temperature [K]\nMET71,1e6,1,400\n", "distance = nothing")])
 def test_bad_files_end_in_one_line(tmp_path, capsys, text, words):

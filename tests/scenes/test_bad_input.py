@@ -23,6 +23,7 @@ CASES = [
     ({"porosity": 0.001}, "porosity = 0.001"),
     ({"width": 0.008}, "must be at most the specimen's width 0.008"),
     ({"bonding_gap": -1e-4}, "bonding_gap = -0.0001 m: must be at least 0"),
+    ({"bonding_gap": 0.01}, "bonding_gap = 0.01 m: must be at most radius_min = 0.0015"),
     ({"coarsening": 0.5}, "coarsening = 0.5: must be at least 1"),
     ({"seed": 1.5}, "seed = 1.5: must be a whole number"),
     ({"cycles": -1}, "cycles = -1: must be a whole number of at least 0"),
