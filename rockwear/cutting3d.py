@@ -13,7 +13,7 @@ from .engines.motion import BackgroundDamping, Foresight
 from .engines.record import Recorder, Watch
 from .engines.turning import Turning
 from .engines.wear import ToolContact, Wear
-from .facet_cutting import FacetCutting
+from .facet_cutting import FacetCutting, check_sampling
 from .facet_tool import FacetTool
 from .kernels.archard import KELVIN, Hardness
 from .kernels.bond_laws import linear_law
@@ -202,7 +202,7 @@ class Cutting3D(Cutting):
 
     def _periods(self):
         v = self.v
-        return {"turning": 1, "bonds": 1, "tool_contact": v.sampling_period, "rock_friction": v.rock_sampling_period,
+        return {"turning": 1, "bonds": 1, "tool_contact": 1, "rock_friction": v.rock_sampling_period,
                 "wear": v.wear_period, "wear_profile": cutting.PROFILE_PERIOD * v.wear_period, "letting_go": 200,
                 "background_damping": v.damping_period, "watch": 200, "recorder": max(1, self._steps(v.record_period))}
 
@@ -292,7 +292,8 @@ class ParticleCutting3D(Cutting3D):
     def _make_tool_engines(self, motion):
         self.bodies = scene.SphereBodies(self.tool, self.motion)
         self.rock_friction = RockFriction(bonds=self.bonds, motion=motion)
-        self.contact = ToolContact(tool=self.bodies, motion=motion, needs=self.wear_law.needs)
+        self.contact = ToolContact(tool=self.bodies, motion=motion, needs=self.wear_law.needs,
+                                   period=self.v.sampling_period)
         self.wear = Wear(contact=self.contact, erosion=self.tool.erosion, tool=self.bodies, law=self.wear_law,
                          hardness=self.hardness, temperature=self._tool_temperature, on_removal=self._on_removal)
 
@@ -316,6 +317,10 @@ class ParticleCutting3D(Cutting3D):
 
 class TriangleCutting3D(Cutting3D, FacetCutting):
     """A tooth of triangles in bonded rock (M 13.2). It wears only where a wear coefficient is given."""
+
+    def __init__(self, values):
+        check_sampling(values)
+        super().__init__(values)
 
     def _make_tool(self, vertices):
         v = self.v

@@ -38,6 +38,11 @@ def parameters(**defaults):
     return common + [replace(p, default=defaults.get(p.name, p.default)) for p in OF_FACETS]
 
 
+def check_sampling(values):
+    """Raise ParameterError unless contacts are sampled in every step, as those that pass from facet to facet must be."""
+    require(values["sampling_period"] == 1, "sampling_period", values["sampling_period"], "1 for a tool of facets", "steps")
+
+
 class FacetCutting(Cutting):
     """Cutting with a tool of segments. Its hardness is that at the tool's first temperature: it has no heat."""
 
@@ -46,8 +51,8 @@ class FacetCutting(Cutting):
 
     def __init__(self, values):
         require(not values["heat"], "heat", "true", "false: heat is for a tool of particles")
+        check_sampling(values)
         super().__init__(values)
-        require(values["sampling_period"] == 1, "sampling_period", values["sampling_period"], "1 for a tool of segments", "steps")
 
     def _make_tool(self, vertices):
         return FacetTool.of_outline(vertices, segment=self.v.segment, density=self.v.tool_density)

@@ -13,6 +13,9 @@ from .conftest import (ROOT, arguments, assert_as_if_never_stopped, finish, hist
 BONDED = dict(width=0.28, height=0.1, depth=0.16, coarsening=1, radius=0.012, tool_radius=3e-3, breadth=0.04, tooth_height=0.06,
               tooth_width=0.04, depth_of_cut=0.026, lowering_velocity=0.5, velocity=0.5, cut_time=0.09, snapshot_period=0.03)
 """A cut as of M 13.3 through 340 spheres."""
+FACETED = {**{name: v for name, v in BONDED.items() if name != "tool_radius"}, "facet": 0.02, "tool_kn": 1e7, "tool_kt": 1e7}
+"""The same by a tooth of triangles. Contacts are ten times as stiff as M's: overlaps of 12 % of a radius at a sharp edge cost
+the energy book 4 %."""
 LOOSE = dict(width=0.3, height=0.08, depth=0.17, coarsening=1, radius=0.012, breadth=0.04, tooth_height=0.08, tooth_width=0.04,
              depth_of_cut=0.026, freeboard=0.03, settling=0.5, lowering_velocity=0.3, cut_time=0.1, start=0.16, facet=0.03)
 """A fill as of M 13.1."""
@@ -71,6 +74,20 @@ def test_wear_in_space_is_judged_by_the_rules_of_acceleration(worn):
     assert (worn.out / "figures/trust.png").exists()
 
 
+def test_volumes_have_their_unit(worn):
+    assert worn.summary["results"]["worn_volume"]["unit"] == worn.summary["results"]["dropped_volume"]["unit"] == "m3"
+    assert read_history(worn.out / "history.csv")[1]["worn_volume"] == "m3"
+
+
+def test_fewer_samples_of_the_contacts_find_the_same_friction(worn, tmp_path):
+    """Each stands for five steps, its springs those of the step before; with older ones 5 % of the friction goes astray."""
+    run = scene("cutting_3d_wear", tmp_path / "run", sampling_period=5, report="false", **BONDED)
+    assert run.code == 0, run.stderr
+    friction, whole = (r.summary["audits"]["friction"]["tool"] for r in (run, worn))
+    assert friction != whole and friction == pytest.approx(whole, rel=0.01)
+    books_close(run, 0.02)
+
+
 def test_no_wear_without_contact_and_none_above_the_cut(worn):
     places = np.load(worn.out / "model.npz")["tool_positions"]
     rubbed = last_snapshot(worn.out)["worn_depth"] > 0
@@ -101,9 +118,7 @@ def test_particles_go_as_they_wear(tmp_path, rule):
 
 
 def test_a_tooth_of_triangles_makes_a_like_cut(tmp_path, worn):
-    # Contacts ten times as stiff as M's: overlaps of 12 % of a radius at a sharp edge cost the energy book 4 %.
-    values = {**{name: v for name, v in BONDED.items() if name != "tool_radius"}, "tool_kn": 1e7, "tool_kt": 1e7}
-    run = scene("cutting_3d_triangles", tmp_path / "run", facet=0.02, report="false", **values)
+    run = scene("cutting_3d_triangles", tmp_path / "run", report="false", **FACETED)
     assert run.code == 0, run.stderr
     books_close(run, 0.03)
     assert value(run, "tensile_cracks") > 10 and value(run, "worn_volume") == 0
@@ -149,7 +164,9 @@ def test_an_interrupted_cut_goes_on_bit_for_bit(tmp_path, name, own):
 
 @pytest.mark.parametrize("name, values, word", [
     ("cutting_3d_wear", dict(cut_time=5), "cut_time"), ("cutting_3d_wear", dict(tool_radius=0.02), "tool_radius"),
+    ("cutting_3d_triangles", dict(sampling_period=2), "sampling_period = 2 steps: must be 1"),
     ("granular_3d", dict(start=0.1), "start"), ("granular_3d", dict(Rn=1), "Rn")])
 def test_what_cannot_be_is_refused(tmp_path, name, values, word):
-    run = scene(name, tmp_path / "run", **{**(LOOSE if name == "granular_3d" else BONDED), **values})
-    assert run.code == 2 and run.stderr.splitlines()[-1].startswith(f"error: {word}")
+    usual = {"granular_3d": LOOSE, "cutting_3d_triangles": FACETED, "cutting_3d_wear": BONDED}[name]
+    run = scene(name, tmp_path / "run", **{**usual, **values})
+    assert run.code == 2 and run.stderr.splitlines()[-1].startswith(f"error: {word}") and not run.out.exists()
