@@ -62,6 +62,14 @@ def mark_stages(run, axes, named=False):
                       transform=axes.get_xaxis_transform())
 
 
+def working_hours(run, axes):
+    """An upper axis of the hours that accelerated wear stands for, over a time in ms; nothing where none is accelerated."""
+    hours = run.parameter("acceleration", 0.0) / MS / 3600
+    if hours > 0:
+        upper = axes.secondary_xaxis("top", functions=(lambda t: t * hours, lambda t: t / hours))
+        upper.set_xlabel("time × acceleration / h")
+
+
 def running_mean(values, window):
     """Mean over `window` values around each one, over fewer at the ends."""
     count = np.convolve(np.ones(len(values)), np.ones(window), "same")

@@ -6,7 +6,7 @@ from ..kernels.outline import contour, nearest_arc
 from . import shapes
 from .cutting import CRACK, cut, draw_cracks, draw_energy, draw_forces, moving_picture, stage_of, summary_line, trusted
 from .page import Section, machine_tiles, percent, quantity, tiles
-from .plots import MM, MS, books, canvas, frame, mark_stages, save, spread, stage_name
+from .plots import MM, MS, books, canvas, frame, mark_stages, save, spread, stage_name, working_hours
 
 
 def shows(run):
@@ -127,5 +127,6 @@ def history(run):
     panels[3].legend(loc="upper left")
     for axes in panels:
         mark_stages(run, axes, named=axes is panels[0])
+    working_hours(run, panels[3])
     panels[-1].set(xlabel="time / ms", xlim=(0, time.max() or 1))
     return figure

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from rockwear.kernels.wear_statistics import places
-from rockwear.report.folder import read_history
+from rockwear.report import segments
+from rockwear.report.folder import RunFolder, read_history
 
 from .conftest import ROOT, SMALL, arguments, interrupt_script, run_script
 
@@ -89,6 +90,22 @@ def test_segments_are_judged_by_the_rules_of_acceleration(worn):
     by_place = np.sum(list(columns.values()), axis=1)
     assert by_place.sum() == pytest.approx(result(worn, "worn_volume"), rel=1e-12)
     model = np.load(worn.out / "model.npz")
+def test_the_depth_of_wear_is_the_way_from_the_new_outline_to_the_worn_one(worn):
+    model, shot = np.load(worn.out / "model.npz"), last_snapshot(worn)
+    depth = distance(model["tool_vertices"], shot["tool_vertices"], model["tool_facets"])
+    assert 0 < result(worn, "maximum_wear_depth") == pytest.approx(depth.max(), rel=1e-12)
+    assert "deepest_wear" not in worn.summary["results"]
+
+
+def test_the_history_shows_working_hours(worn):
+    figure = segments.history(RunFolder(worn.out))
+    figure.draw_without_rendering()
+    panel = figure.axes[-1]
+    upper, = panel.child_axes
+    assert upper.get_xlabel() == "time × acceleration / h"
+    assert upper.get_xlim() == pytest.approx(np.array(panel.get_xlim()) * 3e4 / 3.6e6)
+
+
     middle = model["tool_vertices"][model["tool_facets"]].mean(axis=1)
     worn_volume = np.load(sorted((worn.out / "snapshots").glob("*.npz"))[-1])["worn_volume"]
     assert by_place == pytest.approx(np.bincount(places(model["outline"], middle), worn_volume, len(by_place)), rel=1e-12)
