@@ -295,7 +295,8 @@ class ParticleCutting3D(Cutting3D):
         self.contact = ToolContact(tool=self.bodies, motion=motion, needs=self.wear_law.needs,
                                    period=self.v.sampling_period)
         self.wear = Wear(contact=self.contact, erosion=self.tool.erosion, tool=self.bodies, law=self.wear_law,
-                         hardness=self.hardness, temperature=self._tool_temperature, on_removal=self._on_removal)
+                         hardness=self.hardness, temperature=self._tool_temperature, on_removal=self._on_removal,
+                         volume_unit=self.volume_unit)
 
     def _tool_model(self):
         tool = self.tool

@@ -64,7 +64,7 @@ class FacetCutting(Cutting):
         self.rock_friction = RockFriction(bonds=self.bonds, motion=motion)
         self.wear = FacetWear(contact=self.contact, boundary=tool.boundary, tool=self.bodies, law=self.wear_law,
                               hardness=self.hardness(v.tool_temperature), work_fraction=v.work_fraction,
-                              reshape=v.reshape, acceleration=v.acceleration)
+                              reshape=v.reshape, acceleration=v.acceleration, volume_unit=self.volume_unit)
 
     def _profile(self):
         return super()._profile() if self.v.wear_coefficient and self.v.reshape else None
@@ -78,7 +78,8 @@ class FacetCutting(Cutting):
     # ---- books
 
     def _volume_book(self):
-        return self.tool.boundary.volume_balance()
+        book, worn = self.tool.boundary.volume_balance(), self.wear.volume
+        return book if self.v.reshape else {**book, "archard": worn, "shape_kept": worn}
 
     # ---- what a run's folder shows
 

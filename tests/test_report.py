@@ -16,7 +16,7 @@ from rockwear.report.folder import RunFolder, read_history
 
 ROOT = Path(__file__).parents[1]
 HEADER = ["time [s]", "stage [-]", "cutting_force [N/m]", "thrust_force [N/m]", "tool_work [J/m]",
-          "kinetic_energy [J/m]", "tool_friction [J/m]", "bond_breaking [J/m]", "mass_lost [-]", "worn_volume [m3]",
+          "kinetic_energy [J/m]", "tool_friction [J/m]", "bond_breaking [J/m]", "mass_lost [-]", "worn_volume [m3/m]",
           "tensile_cracks [-]", "shear_cracks [-]"]
 HOT = ["tool_temperature_max [K]", "rock_temperature_max [K]"]
 

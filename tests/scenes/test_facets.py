@@ -82,6 +82,8 @@ def test_the_segments_cut_wear_and_close_their_books(worn):
     assert any("Accelerate at most" in line for line in worn.summary["warnings"])
 
 
+    assert worn.summary["results"]["worn_volume"]["unit"] == "m3/m"
+    assert read_history(worn.out / "history.csv")[1]["worn_volume"] == "m3/m"
 def test_segments_are_judged_by_the_rules_of_acceleration(worn):
     """R's rules, from the record along the outline; a layer as deep as its facet is gone within one contact here."""
     with open(worn.out / "wear_profile.csv", encoding="utf-8") as file:
