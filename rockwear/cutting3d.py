@@ -17,7 +17,7 @@ from .facet_cutting import FacetCutting, check_sampling
 from .facet_tool import FacetTool
 from .kernels.archard import KELVIN, Hardness
 from .kernels.bond_laws import linear_law
-from .kernels.boundary import area_vectors, prism
+from .kernels.boundary import prism
 from .kernels.checks import require
 from .kernels.rigid_motion import Straight
 from .kernels.stability import critical_time_step
@@ -251,12 +251,11 @@ class Cutting3D(Cutting):
                 "status": self.bonds.status, "tool_offset": self.bodies.pose.offset, **self._tool_snapshot()}
 
     def results(self):
-        columns, depth = self.recorder.columns(), self._worn_depth()
+        columns = self.recorder.columns()
         cut = columns["stage"] == len(self.ways) - 1 if columns else np.zeros(0, bool)
         found = {"simulated_time": (self.time, "s"), "time_step": (self.time_step, "s"),
                  "critical_time_step": (self.critical_step, "s"), "coarsening": (self.v.coarsening, "-"),
-                 "maximum_wear_depth": (float(depth.max()), "m"), **self._worn_results(),
-                 **self.bonds.log(),
+                 **self._worn_results(), **self.bonds.log(),
                  **{f"rock_{k}": value for k, value in self.rock.report().items()}}
         if cut.any():
             for name in ("cutting_force", "thrust_force"):
@@ -311,9 +310,9 @@ class ParticleCutting3D(Cutting3D):
         alive = shot["alive"]
         return self.tool.positions[alive], {"diameter": 2 * self.tool.radii[alive], "worn_depth": shot["worn_depth"][alive]}
 
-    def _worn_depth(self):
+    def _worn_results(self):
         erosion = self.tool.erosion
-        return erosion.worn / erosion.areas
+        return {**super()._worn_results(), "maximum_wear_depth": (float((erosion.worn / erosion.areas).max()), "m")}
 
 
 class TriangleCutting3D(Cutting3D, FacetCutting):
@@ -332,14 +331,10 @@ class TriangleCutting3D(Cutting3D, FacetCutting):
         return {"tool_vertices": self.tool.first, "tool_facets": self.tool.boundary.facets}
 
     def _tool_snapshot(self):
-        return {"tool_vertices": self.tool.boundary.vertices, "worn_depth": self._worn_depth()}
+        return {"tool_vertices": self.tool.boundary.vertices, "worn_volume": self.wear.worn}
 
     def _tool_points(self, shot):
-        return shot["tool_vertices"], {"moved": self.tool.boundary.depth(self.tool.first)}
-
-    def _worn_depth(self):
-        areas = np.linalg.norm(area_vectors(self.tool.first, self.tool.boundary.facets), axis=1)
-        return self.wear.worn / areas
+        return shot["tool_vertices"], {"worn_depth": self.tool.worn_depth}
 
 
 class LooseCutting3D(TriangleCutting3D):

@@ -98,14 +98,15 @@ class FacetCutting(Cutting):
         vtk.write(folder / f"rock.{number:04d}.vtk", shot["rock_positions"],
                   {"diameter": 2 * self.rock.radii, "broken_bonds": shot["broken_bonds"]})
         vtk.write(folder / f"tool.{number:04d}.vtk", self.bodies.pose.of(shot["tool_vertices"]),
-                  {"moved": self.tool.boundary.depth(self.tool.first)})
+                  {"worn_depth": self.tool.worn_depth})
 
     def _worn_words(self):
         return f"{100 * self.wear.log()['mass_lost'][0]:.2f} % of the tool worn"
 
     def _worn_results(self):
-        found = {**self.wear.log(), "facets": (self.tool.count, "-"),
-                 "deepest_wear": (float(self.tool.boundary.depth(self.tool.first).max()), "m")}
+        # Where the shape is kept, what each facet would have gone back.
+        depth = self.tool.worn_depth if self.v.reshape else self.wear.worn / self.tool.areas
+        found = {**self.wear.log(), "facets": (self.tool.count, "-"), "maximum_wear_depth": (float(depth.max()), "m")}
         return {**found, "recession_per_slip": (self.wear.recession, "-")} if self.v.reshape else found
 
     def warnings(self):

@@ -11,7 +11,10 @@ import numpy as np
 from scipy.spatial import Delaunay, cKDTree
 
 from .checks import positive, require
-from .outline import check_polygon, inside, signed_distance
+from .outline import check_polygon, inside, nearest_on_edges, signed_distance
+
+PAIRS = 200_000
+"""Points and triangles looked at together in `distance`: some 50 MB of temporaries."""
 
 
 def area_vectors(vertices, facets):
@@ -162,6 +165,43 @@ def nearest_on_triangle(point, triangle):
         return foot
     rim = [p + (q - p) * np.clip((point - p) @ (q - p) / ((q - p) @ (q - p)), 0, 1) for p, q in sides]
     return min(rim, key=lambda place: np.sum((place - point)**2))
+
+
+def distance(points, vertices, facets):
+    """(n,) m from each of the points (n, d) to the nearest point of any facet."""
+    points, corners = np.asarray(points, float), np.asarray(vertices, float)[facets]
+    if points.shape[1] == 2:
+        return np.linalg.norm(points - nearest_on_edges(points, corners[:, 0], corners[:, 1] - corners[:, 0])[0], axis=1)
+    some = max(1, PAIRS // len(corners))
+    parts = [_squared_distances(points[low:low + some], corners).min(axis=1) for low in range(0, len(points), some)]
+    return np.sqrt(np.concatenate([np.empty(0), *parts]))
+
+
+def _squared_distances(points, triangles):
+    """(n, m) m2 between points (n, 3) and triangles (m, 3, 3): that of the plane where the foot lies between the sides,
+    else that of the nearest side."""
+    sides = np.roll(triangles, -1, axis=1) - triangles
+    normal = np.cross(sides[:, 0], sides[:, 1])
+    normal /= np.linalg.norm(normal, axis=1)[:, None]
+    inward = np.cross(normal[:, None], sides)
+    away = points[:, None, None] - triangles
+    between = (np.einsum("nmkd,mkd->nmk", away, inward) >= 0).all(axis=2)
+    along = np.clip(np.einsum("nmkd,mkd->nmk", away, sides) / np.einsum("mkd,mkd->mk", sides, sides), 0, 1)
+    to_side = np.sum((away - along[..., None] * sides)**2, axis=3).min(axis=2)
+    return np.where(between, np.einsum("nmd,md->nm", away[:, :, 0], normal)**2, to_side)
+
+
+def worn_depth(first, vertices, facets):
+    """(n,) m by which a worn surface has gone back from each of its first vertices (n, d): the distance from there to the
+    nearest point of the facets as they are now, at `vertices` (n, d).
+
+    On a face that is the recession along its normal; at an edge that has become another, the way to the nearest of it. It
+    depends on the two shapes alone: a vertex that only slid along its face has none.
+    """
+    depth = np.zeros(len(first))
+    moved = (np.asarray(vertices) != first).any(axis=1)
+    depth[moved] = distance(first[moved], vertices, facets)
+    return depth
 
 
 def segments(polygon):
