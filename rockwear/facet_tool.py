@@ -1,5 +1,6 @@
 """The tool as a closed boundary of facets: segments from an outline, triangles from an STL file or a drawn-out outline."""
 import warnings
+from pathlib import Path
 
 import numpy as np
 
@@ -104,14 +105,16 @@ def read_stl(path, *, scale=1.0):
     if not len(triangles) or not np.isfinite(triangles).all():
         raise ParameterError("stl", str(path), "a file of triangles with finite corners")
     points, number = np.unique(triangles.reshape(-1, 3), axis=0, return_inverse=True)
-    return check_boundary(points * scale, number.reshape(-1, 3), "stl")
+    try:
+        return check_boundary(points * scale, number.reshape(-1, 3))
+    except ParameterError as error:
+        raise ParameterError("stl", f"{path}, {error.value}", error.rule, error.unit) from None
 
 
 def write_stl(path, vertices, facets):
     """Write triangles (m, 3) of vertices (n, 3) as a binary STL file; its numbers have single precision."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        from stl.mesh import Mesh
-    mesh = Mesh(np.zeros(len(facets), dtype=Mesh.dtype))
-    mesh.vectors[:] = np.asarray(vertices)[facets]
-    mesh.save(str(path))
+    rows = np.zeros(len(facets), [("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+    areas = area_vectors(vertices, facets)
+    rows["normal"] = areas / np.linalg.norm(areas, axis=1)[:, None]
+    rows["corners"] = vertices[facets]
+    Path(path).write_bytes(bytes(80) + np.array(len(rows), "<u4").tobytes() + rows.tobytes())
