@@ -7,7 +7,8 @@ import pytest
 
 from rockwear.facet_tool import read_stl, write_stl
 from rockwear.kernels.boundary import area_vectors, check_boundary, distance, volume
-from rockwear.report.folder import read_history
+from rockwear.report import space
+from rockwear.report.folder import RunFolder, read_history
 
 from .conftest import (ROOT, arguments, assert_as_if_never_stopped, finish, history, interrupt_script, run_script,
                        start)
@@ -157,6 +158,17 @@ def test_the_depth_of_wear_is_the_way_from_the_new_surface_to_the_worn_one(blunt
     # More than none, and no more than the vertices went.
     assert 1e-3 < depth.max() <= np.linalg.norm(now - first, axis=1).max()
     assert "deepest_wear" not in blunted.summary["results"]
+
+
+def test_the_page_shows_where_and_how_deep_triangles_are_worn(blunted):
+    assert (blunted.out / "figures/worn_triangles.png").exists()
+    page = (blunted.out / "report.html").read_text(encoding="utf-8")
+    assert "How far the surface has gone back" in page and "maximum wear depth" in page and "particles removed" not in page
+    front, _, bar, whole, near = space.worn_triangles(RunFolder(blunted.out)).axes
+    triangles, = front.collections
+    assert len(triangles.get_facecolor()) == value(blunted, "facets")
+    assert bar.get_ylim()[1] == pytest.approx(1e3 * value(blunted, "maximum_wear_depth"))
+    assert len(near.get_legend().get_texts()) == len(whole.collections) == 5
 
 
 def test_a_worn_tool_goes_out_and_into_the_next_cut(blunted, tmp_path):
