@@ -13,8 +13,8 @@ from scipy.spatial import Delaunay, cKDTree
 from .checks import positive, require
 from .outline import check_polygon, inside, nearest_on_edges, signed_distance
 
-PAIRS = 200_000
-"""Points and triangles looked at together in `distance`: some 50 MB of temporaries."""
+PAIRS = 1_000_000
+"""Most pairs of points and triangles looked at together in `distance`: some 500 MB of temporaries if all were near."""
 
 
 def area_vectors(vertices, facets):
@@ -172,23 +172,30 @@ def distance(points, vertices, facets):
     points, corners = np.asarray(points, float), np.asarray(vertices, float)[facets]
     if points.shape[1] == 2:
         return np.linalg.norm(points - nearest_on_edges(points, corners[:, 0], corners[:, 1] - corners[:, 0])[0], axis=1)
-    some = max(1, PAIRS // len(corners))
-    parts = [_squared_distances(points[low:low + some], corners).min(axis=1) for low in range(0, len(points), some)]
-    return np.sqrt(np.concatenate([np.empty(0), *parts]))
+    middle = corners.mean(axis=1)
+    reach = np.linalg.norm(corners - middle[:, None], axis=2).max()
+    tree, some = cKDTree(middle), max(1, PAIRS // len(corners))
+    # The nearest corner is no nearer than the nearest point.
+    within = cKDTree(corners.reshape(-1, 3)).query(points)[0] + reach * (1 + 1e-9)
+    squared = np.full(len(points), np.inf)
+    for low in range(0, len(points), some):
+        near = tree.query_ball_point(points[low:low + some], within[low:low + some])
+        i, j = np.repeat(np.arange(low, low + len(near)), [len(one) for one in near]), np.concatenate(near).astype(int)
+        np.minimum.at(squared, i, _squared_distances(points[i], corners[j]))
+    return np.sqrt(squared)
 
 
 def _squared_distances(points, triangles):
-    """(n, m) m2 between points (n, 3) and triangles (m, 3, 3): that of the plane where the foot lies between the sides,
-    else that of the nearest side."""
+    """(n,) m2 between points (n, 3) and triangles (n, 3, 3): that of the plane where the foot lies between the sides, else
+    that of the nearest side."""
     sides = np.roll(triangles, -1, axis=1) - triangles
     normal = np.cross(sides[:, 0], sides[:, 1])
     normal /= np.linalg.norm(normal, axis=1)[:, None]
-    inward = np.cross(normal[:, None], sides)
-    away = points[:, None, None] - triangles
-    between = (np.einsum("nmkd,mkd->nmk", away, inward) >= 0).all(axis=2)
-    along = np.clip(np.einsum("nmkd,mkd->nmk", away, sides) / np.einsum("mkd,mkd->mk", sides, sides), 0, 1)
-    to_side = np.sum((away - along[..., None] * sides)**2, axis=3).min(axis=2)
-    return np.where(between, np.einsum("nmd,md->nm", away[:, :, 0], normal)**2, to_side)
+    away = points[:, None] - triangles
+    between = (np.einsum("nkd,nkd->nk", away, np.cross(normal[:, None], sides)) >= 0).all(axis=1)
+    along = np.clip(np.einsum("nkd,nkd->nk", away, sides) / np.einsum("nkd,nkd->nk", sides, sides), 0, 1)
+    to_side = np.sum((away - along[..., None] * sides)**2, axis=2).min(axis=1)
+    return np.where(between, np.einsum("nd,nd->n", away[:, 0], normal)**2, to_side)
 
 
 def worn_depth(first, vertices, facets):
