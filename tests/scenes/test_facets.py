@@ -81,7 +81,7 @@ def test_the_segments_cut_wear_and_close_their_books(worn):
     assert abs(books["mass"]["shape"]) < 1e-12 * books["mass"]["initial"]
     assert books["mass"]["removed"] > 0.9 * books["mass"]["archard"]
     exact = 0.01128 * 3e4 / 0.839 * books["friction"]["worn_by"] / (515 * 9.80665e6 - 20 / 200 * 6 * 9.80665e6)
-    assert result(worn, "worn_volume") == pytest.approx(exact, rel=1e-12)
+    assert result(worn, "worn_volume") == pytest.approx(exact, rel=1e-12, abs=0)
     assert worn.summary["results"]["worn_volume"]["unit"] == "m3/m"
     assert read_history(worn.out / "history.csv")[1]["worn_volume"] == "m3/m"
     assert (worn.out / "report.html").stat().st_size > 0
@@ -112,11 +112,11 @@ def test_segments_are_judged_by_the_rules_of_acceleration(worn):
         assert "place_0 [m3/m]" in file.readline()
     columns, _ = read_history(worn.out / "wear_profile.csv")
     by_place = np.sum(list(columns.values()), axis=1)
-    assert by_place.sum() == pytest.approx(result(worn, "worn_volume"), rel=1e-12)
+    assert by_place.sum() == pytest.approx(result(worn, "worn_volume"), rel=1e-9, abs=0)
     model = np.load(worn.out / "model.npz")
     middle = model["tool_vertices"][model["tool_facets"]].mean(axis=1)
     worn_volume = last_snapshot(worn)["worn_volume"]
-    assert by_place == pytest.approx(np.bincount(places(model["outline"], middle), worn_volume, len(by_place)), rel=1e-12)
+    assert by_place == pytest.approx(np.bincount(places(model["outline"], middle), worn_volume, len(by_place)), rel=1e-9, abs=1e-9 * by_place.sum())
     assert 0 < result(worn, "trusted_acceleration") < 0.1 * 3e4
     assert any("a layer as deep as its facet goes in" in line for line in worn.summary["warnings"])
     assert (worn.out / "figures/trust.png").exists()
@@ -126,14 +126,14 @@ def test_a_half_of_the_work_wears_half(worn, tmp_path):
     run = cut(tmp_path / "out", work_fraction=0.5, reshape="false", cycles=0)
     friction = run.summary["audits"]["friction"]["worn_by"]
     whole = result(worn, "worn_volume") / worn.summary["audits"]["friction"]["worn_by"]
-    assert result(run, "worn_volume") == pytest.approx(0.5 * whole * friction, rel=1e-12)
+    assert result(run, "worn_volume") == pytest.approx(0.5 * whole * friction, rel=1e-12, abs=0)
     assert result(run, "mass_lost") == 0
     book = run.summary["audits"]["mass"]
-    assert book["archard"] == book["shape_kept"] == pytest.approx(7830 * result(run, "worn_volume"), rel=1e-12)
+    assert book["archard"] == book["shape_kept"] == pytest.approx(7830 * result(run, "worn_volume"), rel=1e-12, abs=0)
     assert book["removed"] == book["unexplained"] == 0
     model, shot = np.load(run.out / "model.npz"), last_snapshot(run)
     length = np.linalg.norm(np.diff(model["tool_vertices"][model["tool_facets"]], axis=1)[:, 0], axis=1)
-    assert result(run, "maximum_wear_depth") == pytest.approx((shot["worn_volume"] / length).max(), rel=1e-12) and length.max() <= 1e-3
+    assert result(run, "maximum_wear_depth") == pytest.approx((shot["worn_volume"] / length).max(), rel=1e-12, abs=0) and length.max() <= 1e-3
 
 
 def test_stopped_and_resumed_equals_never_stopped(worn, tmp_path):
