@@ -601,9 +601,9 @@ class Cutting(scene.Scene):
 
     def _worn_results(self):
         erosion = self.tool.erosion
-        return {"mass_lost": (erosion.mass_fraction_lost, "-"), "worn_volume": (erosion.archard_volume, "m3/m"),
+        return {"mass_lost": (erosion.mass_fraction_lost, "-"), "worn_volume": (erosion.archard_volume, self.volume_unit),
                 "particles_removed": (int(np.sum(~erosion.alive)), "-"),
-                "dropped_volume": (erosion.lost_with_pieces, "m3/m"), "tool_particles": (self.tool.count, "-")}
+                "dropped_volume": (erosion.lost_with_pieces, self.volume_unit), "tool_particles": (self.tool.count, "-")}
 
     def results(self):
         """{name: (value, unit)} of the run."""

@@ -3,6 +3,7 @@ from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
+from scipy.spatial import ConvexHull
 from yade import NewtonIntegrator, Vector3
 
 from . import cutting, engines, scene, vtk
@@ -13,16 +14,16 @@ from .engines.motion import BackgroundDamping, Foresight
 from .engines.record import Recorder, Watch
 from .engines.turning import Turning
 from .engines.wear import ToolContact, Wear
-from .facet_cutting import FacetCutting
-from .facet_tool import FacetTool
+from .facet_cutting import FacetCutting, check_sampling
+from .facet_tool import FacetTool, read_stl, write_stl
 from .kernels.archard import KELVIN, Hardness
 from .kernels.bond_laws import linear_law
-from .kernels.boundary import area_vectors, prism
+from .kernels.boundary import prism, refine
 from .kernels.checks import require
 from .kernels.rigid_motion import Straight
 from .kernels.stability import critical_time_step
 from .kernels.wear_laws import wear_law
-from .parameters import Parameter, above_zero, flag, number
+from .parameters import Parameter, above_zero, file, flag, number
 from .rock import Block
 from .tool import LayeredTool
 
@@ -62,7 +63,10 @@ PARAMETERS = [p for p in cutting.parameters(**OURS) if p.name in SHARED] + [
 ]
 OF_PARTICLES = [Parameter("tool_radius", 1.5e-3, "m", above_zero, "radius of the tool's spheres, before coarsening",
                           "M 13.3")]
-OF_TRIANGLES = [Parameter("facet", 0.02, "m", above_zero, "size of the tool's triangles", "ours"),
+OF_TRIANGLES = [Parameter("stl", "", "", file, "STL file in m: a tool of your own in place of outline, breadth and tooth_*. It "
+                          "moves in +x, y is up, z across, the lowest point is the tip; top and back are held"),
+                Parameter("facet", 0.02, "m", above_zero, "size of the tool's triangles, halves of such squares; edges "
+                          "of an STL file longer than 1.5 times that are cut in halves", "ours"),
                 Parameter("work_fraction", 1.0, "", number(0, 1), "part of the friction work that wears the tool",
                           "M 6.9"),
                 Parameter("reshape", False, "", flag, "move the vertices with the wear")]
@@ -104,16 +108,14 @@ class Cutting3D(Cutting):
                 f"{v.start:g} of {v.width:g} m", "s")
         require(2 * v.radius < v.depth_of_cut < v.height, "depth_of_cut", v.depth_of_cut,
                 f"more than a rock particle, {2 * v.radius:g}, and less than the block's height {v.height:g}", "m")
-        require(v.breadth < v.depth, "breadth", v.breadth, f"less than the block's depth {v.depth:g}", "m")
         self.law = self._law(v)
         self.hardness = Hardness.constant(v.hardness)
         self.wear_law = wear_law(v.wear_law, k=v.wear_coefficient, mu=v.tool_mu, exponent=v.wear_exponent,
                                  modes=v.wear_modes).scaled(v.acceleration)
         self.gravity = Vector3(0, -v.gravity, 0) if v.gravity else None
-        self.rock = self._make_rock()
-        self.outline = self._section()
-        self.tool = self._make_tool(self.outline)
+        self.outline, self.tool = self._shape()
         self._check_start(v)
+        self.rock = self._make_rock()
         self.ways = self._ways()
         start = v.start + v.tip_radius, v.height + v.approach
         self.motion = Straight(start=start, velocity=self.ways[0][2])
@@ -144,12 +146,14 @@ class Cutting3D(Cutting):
         rock.support("left", below=v.height - 2 * v.depth_of_cut)
         return rock
 
-    def _section(self):
+    def _shape(self):
+        """(outline (k, 2) m from the side, the tool)."""
         v = self.v
-        vertices = self._outline(v)
-        height = float(np.ptp(vertices[:, 1]))
+        require(v.breadth < v.depth, "breadth", v.breadth, f"less than the block's depth {v.depth:g}", "m")
+        outline = self._outline(v)
+        height = float(np.ptp(outline[:, 1]))
         require(height > v.depth_of_cut, "tooth_height", height, f"more than depth_of_cut = {v.depth_of_cut:g}", "m")
-        return vertices
+        return outline, self._make_tool(outline)
 
     def _check_start(self, v):
         """The tooth may be lowered beside the block: nothing to check."""
@@ -202,7 +206,7 @@ class Cutting3D(Cutting):
 
     def _periods(self):
         v = self.v
-        return {"turning": 1, "bonds": 1, "tool_contact": v.sampling_period, "rock_friction": v.rock_sampling_period,
+        return {"turning": 1, "bonds": 1, "tool_contact": 1, "rock_friction": v.rock_sampling_period,
                 "wear": v.wear_period, "wear_profile": cutting.PROFILE_PERIOD * v.wear_period, "letting_go": 200,
                 "background_damping": v.damping_period, "watch": 200, "recorder": max(1, self._steps(v.record_period))}
 
@@ -251,12 +255,11 @@ class Cutting3D(Cutting):
                 "status": self.bonds.status, "tool_offset": self.bodies.pose.offset, **self._tool_snapshot()}
 
     def results(self):
-        columns, depth = self.recorder.columns(), self._worn_depth()
+        columns = self.recorder.columns()
         cut = columns["stage"] == len(self.ways) - 1 if columns else np.zeros(0, bool)
         found = {"simulated_time": (self.time, "s"), "time_step": (self.time_step, "s"),
                  "critical_time_step": (self.critical_step, "s"), "coarsening": (self.v.coarsening, "-"),
-                 "maximum_wear_depth": (float(depth.max()), "m"), **self._worn_results(),
-                 **self.bonds.log(),
+                 **self._worn_results(), **self.bonds.log(),
                  **{f"rock_{k}": value for k, value in self.rock.report().items()}}
         if cut.any():
             for name in ("cutting_force", "thrust_force"):
@@ -292,9 +295,11 @@ class ParticleCutting3D(Cutting3D):
     def _make_tool_engines(self, motion):
         self.bodies = scene.SphereBodies(self.tool, self.motion)
         self.rock_friction = RockFriction(bonds=self.bonds, motion=motion)
-        self.contact = ToolContact(tool=self.bodies, motion=motion, needs=self.wear_law.needs)
+        self.contact = ToolContact(tool=self.bodies, motion=motion, needs=self.wear_law.needs,
+                                   period=self.v.sampling_period)
         self.wear = Wear(contact=self.contact, erosion=self.tool.erosion, tool=self.bodies, law=self.wear_law,
-                         hardness=self.hardness, temperature=self._tool_temperature, on_removal=self._on_removal)
+                         hardness=self.hardness, temperature=self._tool_temperature, on_removal=self._on_removal,
+                         volume_unit=self.volume_unit)
 
     def _tool_model(self):
         tool = self.tool
@@ -309,31 +314,54 @@ class ParticleCutting3D(Cutting3D):
         alive = shot["alive"]
         return self.tool.positions[alive], {"diameter": 2 * self.tool.radii[alive], "worn_depth": shot["worn_depth"][alive]}
 
-    def _worn_depth(self):
+    def _worn_results(self):
         erosion = self.tool.erosion
-        return erosion.worn / erosion.areas
+        return {**super()._worn_results(), "maximum_wear_depth": (float((erosion.worn / erosion.areas).max()), "m")}
 
 
 class TriangleCutting3D(Cutting3D, FacetCutting):
     """A tooth of triangles in bonded rock (M 13.2). It wears only where a wear coefficient is given."""
+
+    def __init__(self, values):
+        check_sampling(values)
+        super().__init__(values)
+
+    def _shape(self):
+        v = self.v
+        if not v.stl:
+            return super()._shape()
+        require(not v.outline, "stl", v.stl, f"without outline = {v.outline}: a tool has one shape")
+        vertices, facets = read_stl(v.stl)
+        size = np.ptp(vertices, axis=0)
+        require(size[0] < v.width and size[2] < v.depth, "stl", f"{v.stl}, {size[0]:g} x {size[1]:g} x {size[2]:g}",
+                f"shorter and narrower than the block, {v.width:g} x {v.height:g} x {v.depth:g}", "m")
+        require(size[1] > v.depth_of_cut, "stl", f"{v.stl} of a height of {size[1]:g}",
+                f"higher than depth_of_cut = {v.depth_of_cut:g}", "m")
+        # Its tip goes where the tooth of the parameters has its own, wherever the file has its origin.
+        low, high = vertices.min(axis=0), vertices.max(axis=0)
+        tip = vertices[vertices[:, 1] < low[1] + 1e-6 * size[1], 0].max()
+        vertices, facets = refine(vertices - [tip + v.tip_radius, low[1], 0.5 * (low[2] + high[2])], facets,
+                                  1.5 * v.facet)
+        seen = vertices[:, :2]
+        return seen[ConvexHull(seen).vertices], FacetTool(vertices=vertices, facets=facets, density=v.tool_density)
 
     def _make_tool(self, vertices):
         v = self.v
         corners, facets = prism(vertices, v.breadth, v.facet)
         return FacetTool(vertices=corners, facets=facets, density=v.tool_density)
 
+    def write_shape(self, folder):
+        if self.v.wear_coefficient and self.v.reshape:
+            write_stl(folder / "tool.stl", self.tool.boundary.vertices, self.tool.boundary.facets)
+
     def _tool_model(self):
         return {"tool_vertices": self.tool.first, "tool_facets": self.tool.boundary.facets}
 
     def _tool_snapshot(self):
-        return {"tool_vertices": self.tool.boundary.vertices, "worn_depth": self._worn_depth()}
+        return {"tool_vertices": self.tool.boundary.vertices, "worn_volume": self.wear.worn}
 
     def _tool_points(self, shot):
-        return shot["tool_vertices"], {"moved": self.tool.boundary.depth(self.tool.first)}
-
-    def _worn_depth(self):
-        areas = np.linalg.norm(area_vectors(self.tool.first, self.tool.boundary.facets), axis=1)
-        return self.wear.worn / areas
+        return shot["tool_vertices"], {"worn_depth": self.tool.worn_depth}
 
 
 class LooseCutting3D(TriangleCutting3D):

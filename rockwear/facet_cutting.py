@@ -38,6 +38,11 @@ def parameters(**defaults):
     return common + [replace(p, default=defaults.get(p.name, p.default)) for p in OF_FACETS]
 
 
+def check_sampling(values):
+    """Raise ParameterError unless contacts are sampled in every step, as those that pass from facet to facet must be."""
+    require(values["sampling_period"] == 1, "sampling_period", values["sampling_period"], "1 for a tool of facets", "steps")
+
+
 class FacetCutting(Cutting):
     """Cutting with a tool of segments. Its hardness is that at the tool's first temperature: it has no heat."""
 
@@ -46,8 +51,8 @@ class FacetCutting(Cutting):
 
     def __init__(self, values):
         require(not values["heat"], "heat", "true", "false: heat is for a tool of particles")
+        check_sampling(values)
         super().__init__(values)
-        require(values["sampling_period"] == 1, "sampling_period", values["sampling_period"], "1 for a tool of segments", "steps")
 
     def _make_tool(self, vertices):
         return FacetTool.of_outline(vertices, segment=self.v.segment, density=self.v.tool_density)
@@ -59,7 +64,7 @@ class FacetCutting(Cutting):
         self.rock_friction = RockFriction(bonds=self.bonds, motion=motion)
         self.wear = FacetWear(contact=self.contact, boundary=tool.boundary, tool=self.bodies, law=self.wear_law,
                               hardness=self.hardness(v.tool_temperature), work_fraction=v.work_fraction,
-                              reshape=v.reshape, acceleration=v.acceleration)
+                              reshape=v.reshape, acceleration=v.acceleration, volume_unit=self.volume_unit)
 
     def _profile(self):
         return super()._profile() if self.v.wear_coefficient and self.v.reshape else None
@@ -73,7 +78,8 @@ class FacetCutting(Cutting):
     # ---- books
 
     def _volume_book(self):
-        return self.tool.boundary.volume_balance()
+        book, worn = self.tool.boundary.volume_balance(), self.wear.volume
+        return book if self.v.reshape else {**book, "archard": worn, "shape_kept": worn}
 
     # ---- what a run's folder shows
 
@@ -92,14 +98,15 @@ class FacetCutting(Cutting):
         vtk.write(folder / f"rock.{number:04d}.vtk", shot["rock_positions"],
                   {"diameter": 2 * self.rock.radii, "broken_bonds": shot["broken_bonds"]})
         vtk.write(folder / f"tool.{number:04d}.vtk", self.bodies.pose.of(shot["tool_vertices"]),
-                  {"moved": self.tool.boundary.depth(self.tool.first)})
+                  {"worn_depth": self.tool.worn_depth})
 
     def _worn_words(self):
         return f"{100 * self.wear.log()['mass_lost'][0]:.2f} % of the tool worn"
 
     def _worn_results(self):
-        found = {**self.wear.log(), "facets": (self.tool.count, "-"),
-                 "deepest_wear": (float(self.tool.boundary.depth(self.tool.first).max()), "m")}
+        # Where the shape is kept, what each facet would have gone back.
+        depth = self.tool.worn_depth if self.v.reshape else self.wear.worn / self.tool.areas
+        found = {**self.wear.log(), "facets": (self.tool.count, "-"), "maximum_wear_depth": (float(depth.max()), "m")}
         return {**found, "recession_per_slip": (self.wear.recession, "-")} if self.v.reshape else found
 
     def warnings(self):

@@ -3,7 +3,7 @@ import warnings
 
 import numpy as np
 
-from .kernels.boundary import check_boundary, refine, segments
+from .kernels.boundary import area_vectors, check_boundary, refine, segments, worn_depth
 from .kernels.checks import ParameterError, positive
 from .kernels.worn_boundary import WornBoundary
 
@@ -40,6 +40,16 @@ class FacetTool:
     def positions(self):
         """(m, d) m, the middles of the facets as they were made."""
         return self.first[self.boundary.facets].mean(axis=1)
+
+    @property
+    def areas(self):
+        """(m,) m2 of the facets as they were made; in the plane lengths, m."""
+        return np.linalg.norm(area_vectors(self.first, self.boundary.facets), axis=1)
+
+    @property
+    def worn_depth(self):
+        """(n,) m by which the surface has gone back from each of its first vertices; see kernels.boundary.worn_depth."""
+        return worn_depth(self.first, self.boundary.vertices, self.boundary.facets)
 
     @property
     def neighbours(self):
@@ -94,7 +104,10 @@ def read_stl(path, *, scale=1.0):
     if not len(triangles) or not np.isfinite(triangles).all():
         raise ParameterError("stl", str(path), "a file of triangles with finite corners")
     points, number = np.unique(triangles.reshape(-1, 3), axis=0, return_inverse=True)
-    return check_boundary(points * scale, number.reshape(-1, 3), "stl")
+    try:
+        return check_boundary(points * scale, number.reshape(-1, 3))
+    except ParameterError as error:
+        raise ParameterError("stl", f"{path}, {error.value}", error.rule, error.unit) from None
 
 
 def write_stl(path, vertices, facets):

@@ -127,7 +127,7 @@ class Run:
         else:
             for old in OURS:
                 shutil.rmtree(self.folder / old, ignore_errors=True)
-            for old in ("summary.json", "history.csv", "cracks.csv", "turns.csv", "report.html"):
+            for old in ("summary.json", "history.csv", "cracks.csv", "turns.csv", "tool.stl", "report.html"):
                 (self.folder / old).unlink(missing_ok=True)
             (self.folder / "snapshots").mkdir()
             np.savez_compressed(self.folder / "model.npz", **self.scene.model())
@@ -162,6 +162,7 @@ class Run:
                 self._checkpoint()
             warnings = self.scene.warnings()
             self._write_summary(ended, warnings)
+            self.scene.write_shape(self.folder)
             for line in warnings:
                 print(f"warning: {line}", file=sys.stderr)
             if not code and self.values["report"]:

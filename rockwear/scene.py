@@ -487,6 +487,9 @@ class Scene:
         """Lines on what in this run's results is not to be relied on."""
         return []
 
+    def write_shape(self, folder):
+        """Write the tool's shape, where it may have changed and another run can take it for its own, into the folder."""
+
     def tables(self):
         """{file: (header, rows)} of further tables: the cracks in order of time."""
         units = "s m m m - - - - J - -".split()

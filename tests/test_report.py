@@ -10,13 +10,14 @@ import numpy as np
 import pytest
 
 from rockwear import report
-from rockwear.kernels.outline import contour
+from rockwear.kernels.boundary import prism
+from rockwear.kernels.outline import contour, perimeter
 from rockwear.report import page, shapes
 from rockwear.report.folder import RunFolder, read_history
 
 ROOT = Path(__file__).parents[1]
 HEADER = ["time [s]", "stage [-]", "cutting_force [N/m]", "thrust_force [N/m]", "tool_work [J/m]",
-          "kinetic_energy [J/m]", "tool_friction [J/m]", "bond_breaking [J/m]", "mass_lost [-]", "worn_volume [m3]",
+          "kinetic_energy [J/m]", "tool_friction [J/m]", "bond_breaking [J/m]", "mass_lost [-]", "worn_volume [m3/m]",
           "tensile_cracks [-]", "shear_cracks [-]"]
 HOT = ["tool_temperature_max [K]", "rock_temperature_max [K]"]
 
@@ -169,6 +170,19 @@ def test_from_the_command_line_without_yade(tmp_path):
                                                 (3e-6, "m3/m", "3 mm³/mm"), (0, "J/m", "0 J/m")])
 def test_quantities(value, unit, shown):
     assert page.quantity(value, unit) == shown
+
+
+def test_section_of_a_drawn_out_polygon_is_the_polygon():
+    polygon = np.array([[0, 0], [0.04, 0.01], [0.03, 0.05], [0, 0.03]])
+    vertices, facets = prism(polygon, 0.02, 7e-3)
+    cut = shapes.section(vertices, facets, 1e-9)
+    assert np.linalg.norm(cut[:, 1] - cut[:, 0], axis=1).sum() == pytest.approx(perimeter(polygon), rel=1e-9)
+    rim = np.vstack([polygon, polygon[:1]])
+    for a, b in zip(rim, rim[1:]):
+        # Every side lies in it, its ends first and last.
+        on = np.abs((cut - a) @ [a[1] - b[1], b[0] - a[0]]).max(axis=1) < 1e-12
+        assert (cut[on] @ (b - a)).min() == pytest.approx(a @ (b - a)) and (cut[on] @ (b - a)).max() == pytest.approx(b @ (b - a))
+    assert shapes.section(vertices, facets, 0.011).shape == (0, 2, 2)
 
 
 def test_outline_of_a_block_of_discs():

@@ -213,8 +213,9 @@ class FacetWear(WearEngine):
     than vertices can go, where the boundary would fold, and where a particle has come to the inner side of a facet.
     """
 
-    def __init__(self, *, contact, boundary, tool, law, hardness, work_fraction=1.0, reshape=True, acceleration=1.0):
-        super().__init__(contact=contact, law=law, count=len(boundary.facets))
+    def __init__(self, *, contact, boundary, tool, law, hardness, work_fraction=1.0, reshape=True, acceleration=1.0,
+                 **common):
+        super().__init__(contact=contact, law=law, count=len(boundary.facets), **common)
         self.boundary, self.tool, self.hardness = boundary, tool, hardness
         self.work_fraction, self.reshape, self.acceleration = work_fraction, reshape, acceleration
         self.worn = np.zeros(len(boundary.facets))
@@ -285,4 +286,4 @@ class FacetWear(WearEngine):
 
     def log(self):
         return {"mass_lost": (1 - self.boundary.volume / self.boundary.first_volume, "-"),
-                "worn_volume": (self.volume, "m3")}
+                "worn_volume": (self.volume, self.volume_unit)}

@@ -183,14 +183,14 @@ class WearEngine(Engine):
     contact: the ToolContact that says where and under what force the tool slides; law: of kernels.wear_laws, accelerated;
     count: pieces (particles, facets) of the tool. `events` counts for each piece how often a contact began to rub it, as
     far as visits can tell them apart; `worn` (count,) is the volume in m3 worn off it, whatever it had to give, `limit`
-    that at which it is gone: what R's rules are judged by.
+    that at which it is gone: what R's rules are judged by. volume_unit: of what is recorded.
     """
 
     name = "wear"
 
-    def __init__(self, *, contact, law, count):
+    def __init__(self, *, contact, law, count, volume_unit="m3/m"):
         super().__init__()
-        self.contact, self.law = contact, law
+        self.contact, self.law, self.volume_unit = contact, law, volume_unit
         self.contact_energy_removed = self.work_used = 0.0
         self.events, self.rubbed = np.zeros(count, int), np.zeros(count, bool)
 
@@ -224,8 +224,8 @@ class Wear(WearEngine):
     erosion: kernels.erosion.Erosion of the tool; temperature: a function giving (m,) K of the tool particles.
     """
 
-    def __init__(self, *, contact, erosion, tool, law, hardness, temperature, on_removal):
-        super().__init__(contact=contact, law=law, count=tool.count)
+    def __init__(self, *, contact, erosion, tool, law, hardness, temperature, on_removal, **common):
+        super().__init__(contact=contact, law=law, count=tool.count, **common)
         self.erosion, self.tool = erosion, tool
         self.hardness, self.temperature = hardness, temperature
         self.on_removal = on_removal
@@ -277,7 +277,7 @@ class Wear(WearEngine):
 
     def log(self):
         return {"mass_lost": (self.erosion.mass_fraction_lost, "-"),
-                "worn_volume": (self.erosion.archard_volume, "m3")}
+                "worn_volume": (self.erosion.archard_volume, self.volume_unit)}
 
 
 class WearProfile(Engine):

@@ -11,7 +11,10 @@ import numpy as np
 from scipy.spatial import Delaunay, cKDTree
 
 from .checks import positive, require
-from .outline import check_polygon, inside, signed_distance
+from .outline import check_polygon, inside, nearest_on_edges, signed_distance
+
+PAIRS = 1_000_000
+"""Most pairs of points and triangles looked at together in `distance`: some 500 MB of temporaries if all were near."""
 
 
 def area_vectors(vertices, facets):
@@ -162,6 +165,50 @@ def nearest_on_triangle(point, triangle):
         return foot
     rim = [p + (q - p) * np.clip((point - p) @ (q - p) / ((q - p) @ (q - p)), 0, 1) for p, q in sides]
     return min(rim, key=lambda place: np.sum((place - point)**2))
+
+
+def distance(points, vertices, facets):
+    """(n,) m from each of the points (n, d) to the nearest point of any facet."""
+    points, corners = np.asarray(points, float), np.asarray(vertices, float)[facets]
+    if points.shape[1] == 2:
+        return np.linalg.norm(points - nearest_on_edges(points, corners[:, 0], corners[:, 1] - corners[:, 0])[0], axis=1)
+    middle = corners.mean(axis=1)
+    reach = np.linalg.norm(corners - middle[:, None], axis=2).max()
+    tree, some = cKDTree(middle), max(1, PAIRS // len(corners))
+    # The nearest corner is no nearer than the nearest point.
+    within = cKDTree(corners.reshape(-1, 3)).query(points)[0] + reach * (1 + 1e-9)
+    squared = np.full(len(points), np.inf)
+    for low in range(0, len(points), some):
+        near = tree.query_ball_point(points[low:low + some], within[low:low + some])
+        i, j = np.repeat(np.arange(low, low + len(near)), [len(one) for one in near]), np.concatenate(near).astype(int)
+        np.minimum.at(squared, i, _squared_distances(points[i], corners[j]))
+    return np.sqrt(squared)
+
+
+def _squared_distances(points, triangles):
+    """(n,) m2 between points (n, 3) and triangles (n, 3, 3): that of the plane where the foot lies between the sides, else
+    that of the nearest side."""
+    sides = np.roll(triangles, -1, axis=1) - triangles
+    normal = np.cross(sides[:, 0], sides[:, 1])
+    normal /= np.linalg.norm(normal, axis=1)[:, None]
+    away = points[:, None] - triangles
+    between = (np.einsum("nkd,nkd->nk", away, np.cross(normal[:, None], sides)) >= 0).all(axis=1)
+    along = np.clip(np.einsum("nkd,nkd->nk", away, sides) / np.einsum("nkd,nkd->nk", sides, sides), 0, 1)
+    to_side = np.sum((away - along[..., None] * sides)**2, axis=2).min(axis=1)
+    return np.where(between, np.einsum("nd,nd->n", away[:, 0], normal)**2, to_side)
+
+
+def worn_depth(first, vertices, facets):
+    """(n,) m by which a worn surface has gone back from each of its first vertices (n, d): the distance from there to the
+    nearest point of the facets as they are now, at `vertices` (n, d).
+
+    On a face that is the recession along its normal; at an edge that has become another, the way to the nearest of it. It
+    depends on the two shapes alone: a vertex that only slid along its face has none.
+    """
+    depth = np.zeros(len(first))
+    moved = (np.asarray(vertices) != first).any(axis=1)
+    depth[moved] = distance(first[moved], vertices, facets)
+    return depth
 
 
 def segments(polygon):

@@ -14,7 +14,8 @@ from ..kernels.rigid_motion import Pose
 from . import shapes
 from .folder import read_history
 from .page import Section, image, machine_tiles, number, percent, quantity, table, tiles, words
-from .plots import (MM, MS, books, canvas, discs, frame, mark_stages, running_mean, save, spread, stage_name)
+from .plots import (MM, MS, books, canvas, discs, frame, mark_stages, running_mean, save, spread, stage_name,
+                    working_hours)
 
 ROCK, EDGE, SUPPORT, CRACK = "#e2d4b4", "#8d7d58", "#9a9a92", "#cc1414"
 STEEL, SKIN, PALE = "#7d868c", "#2f3a40", "#c3c9cd"
@@ -501,20 +502,7 @@ def draw_wear(run, axes, time):
     axes.plot(time, 100 * run.column("worn_volume") / whole, color=CRACK, label="worn by Archard's law")
     axes.set(ylabel="% of the tool")
     axes.legend(loc="upper left")
-    add_working_hours(run, axes, time)
-
-
-def add_working_hours(run, axes, time):
-    """An upper axis of the hours that the accelerated wear stands for; they rest while a worn tool comes to the rock."""
-    hours = run.column("working_time") * run.parameter("acceleration", 0.0) / 3600
-    if not np.isfinite(hours + time).all() or not hours.max(initial=0) > 0:
-        return
-    # From the first moment on, and at the same rate beyond the last.
-    hours, time = (np.concatenate([[0.0], values, 2 * values[-1:]]) for values in (hours, time))
-    grows = np.append(True, np.diff(hours) > 0)
-    upper = axes.secondary_xaxis("top", functions=(lambda t: np.interp(t, time, hours),
-                                                   lambda h: np.interp(h, hours[grows], time[grows])))
-    upper.set_xlabel("working time × acceleration / h")
+    working_hours(run, axes, time)
 
 
 def draw_hottest(run, axes, time):

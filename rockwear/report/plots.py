@@ -62,6 +62,19 @@ def mark_stages(run, axes, named=False):
                       transform=axes.get_xaxis_transform())
 
 
+def working_hours(run, axes, time):
+    """An upper axis of the hours that the accelerated wear stands for; they rest while a worn tool comes to the rock."""
+    hours = run.column("working_time") * run.parameter("acceleration", 0.0) / 3600
+    if not np.isfinite(hours + time).all() or not hours.max(initial=0) > 0:
+        return
+    # From the first moment on, and at the same rate beyond the last.
+    hours, time = (np.concatenate([[0.0], values, 2 * values[-1:]]) for values in (hours, time))
+    grows = np.append(True, np.diff(hours) > 0)
+    upper = axes.secondary_xaxis("top", functions=(lambda t: np.interp(t, time, hours),
+                                                   lambda h: np.interp(h, hours[grows], time[grows])))
+    upper.set_xlabel("working time × acceleration / h")
+
+
 def running_mean(values, window):
     """Mean over `window` values around each one, over fewer at the ends."""
     count = np.convolve(np.ones(len(values)), np.ones(window), "same")

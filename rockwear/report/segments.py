@@ -6,7 +6,7 @@ from ..kernels.outline import contour, nearest_arc
 from . import shapes
 from .cutting import CRACK, cut, draw_cracks, draw_energy, draw_forces, moving_picture, summary_line, trusted, worn_stages
 from .page import Section, machine_tiles, percent, quantity, tiles
-from .plots import MM, MS, books, canvas, frame, mark_stages, save
+from .plots import MM, MS, books, canvas, frame, mark_stages, save, working_hours
 
 
 def shows(run):
@@ -43,11 +43,13 @@ def key_results(run):
     return tiles([
         tile("mean cutting force", "mean_cutting_force", "N/m"), tile("peak cutting force", "peak_cutting_force", "N/m"),
         tile("mean thrust force", "mean_thrust_force", "N/m"), tile("specific energy", "specific_energy", "J/m3"),
-        *([tile("worn volume", "worn_volume", "m3/m", "by the wear law"), tile("deepest wear", "deepest_wear", "m"),
+        *([tile("worn volume", "worn_volume", "m3/m", "by the wear law"),
+           tile("maximum wear depth", "maximum_wear_depth", "m", "of the surface, from the new to the worn one"),
            ("mass lost", percent(run.result("mass_lost"), 1.0), ""),
            ("recession over slip", quantity(run.result("recession_per_slip"), "-"), "wear is relieved where it is not small")]
           if run.parameter("reshape", False) else
-          [tile("worn volume", "worn_volume", "m3/m", "by the wear law; the shape is kept")]),
+          [tile("worn volume", "worn_volume", "m3/m", "by the wear law; the shape is kept"),
+           tile("maximum wear depth", "maximum_wear_depth", "m", "that a segment would go back")]),
         ("cracks", f"{run.result('tensile_cracks')} + {run.result('shear_cracks')}", "tensile + shear, at the end"),
         ("energy residual", percent(energy.get("residual", np.nan), energy.get("tool_work", 0.0)), "of the tool's work"),
         *machine_tiles(run)])
@@ -125,6 +127,7 @@ def history(run):
     panels[3].plot(time, run.column("worn_volume"), color=CRACK, label="worn by the wear law")
     panels[3].set_ylabel("m³/m")
     panels[3].legend(loc="upper left")
+    working_hours(run, panels[3], time)
     for axes in panels:
         mark_stages(run, axes, named=axes is panels[0])
     panels[-1].set(xlabel="time / ms", xlim=(0, time.max() or 1))

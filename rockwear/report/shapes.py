@@ -83,6 +83,19 @@ def loop(facets):
     return np.array(corners)
 
 
+def section(vertices, facets, z):
+    """(k, 2, 2) m: the segments, in x and y, in which the plane of this z cuts triangles (m, 3) of vertices (n, 3)."""
+    corners = vertices[facets]
+    above = corners[:, :, 2] > z
+    cut = above.any(axis=1) & ~above.all(axis=1)
+    corners, above = corners[cut], above[cut]
+    # Of three corners one is alone on its side; the plane cuts its two edges.
+    alone = np.argmax(above == (above.sum(axis=1) == 1)[:, None], axis=1)
+    here, *others = (corners[np.arange(len(corners)), (alone + k) % 3] for k in range(3))
+    return np.stack([(here + (other - here) * ((z - here[:, 2]) / (other - here)[:, 2])[:, None])[:, :2] for other in others],
+                    axis=1)
+
+
 def distance_to(points, polygons, spacing):
     """(n,) m from each point to the nearest side of the polygons, to within `spacing`; nan without any."""
     if not polygons:

@@ -4,13 +4,16 @@ import math
 import numpy as np
 from matplotlib import colormaps
 from matplotlib.cm import ScalarMappable
-from matplotlib.collections import PolyCollection
+from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import LinearSegmentedColormap, Normalize, to_rgb
+from matplotlib.figure import Figure
+from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
+from ..kernels.boundary import area_vectors, worn_depth
 from . import shapes
 from .cutting import CRACK, DAMAGE, LOOSE, PALE, STEEL, SUPPORT, trusted
 from .page import Section, machine_tiles, number, percent, quantity, tiles
-from .plots import MM, books, canvas, running_mean, save, spread
+from .plots import MM, books, canvas, frame as limits, running_mean, save, spread
 
 CORNERS = 14
 """Of the polygon that stands for a sphere."""
@@ -19,6 +22,12 @@ SIDE, ABOVE, BELOW = (0.0, 0.0), (32.0, 28.0), (55.0, -25.0)
 WEAR = LinearSegmentedColormap.from_list("wear", ["#d9dde0", "#fdd873", "#f58a3c", "#c8252c", "#54093a"])
 M_DEPTH = 0.14e-3
 """m, maximum wear depth of M 13.3 (model II)."""
+WORN_DEPTH = {
+    "particles": "Depth worn off each particle that is left: volume over the square that it shows.",
+    "triangles": "How far the surface has gone back: the way from where each triangle was to the nearest point of the worn "
+                 "surface. Below: the section in the middle plane as it was and as it became.",
+    "kept triangles": "How far each triangle would have gone back, volume over area: the shape is kept."}
+"""What the colour of wear means."""
 
 
 def shows(run):
@@ -39,8 +48,8 @@ def sections(run):
         Section("The cut in perspective", rock, [drawn(perspective)]),
         Section("The cut from the side", f"The slab that the tooth runs through, its nearer half taken away. {rock}", [drawn(side)]),
         Section("Forces, work and wear over time", "Thin lines are the record, thick ones a running mean.", [drawn(forces)]),
-        Section("Wear of the tooth", "Depth worn off each particle that is left: volume over the square that it shows.",
-                [drawn(wear), drawn(wear_over_height)]),
+        Section("Wear of the tooth", WORN_DEPTH[made_of(run)],
+                [drawn(wear), drawn(wear_over_height), drawn(worn_triangles)]),
         Section("Shape of the tooth at stages, and the particles removed", "Red: removed particles, where they were.",
                 [drawn(stages_of_wear)]),
         *trusted(run),
@@ -55,6 +64,11 @@ def loose(run):
 def has_particles(run):
     """True for a tooth of particles."""
     return "tool_positions" in run.model
+
+
+def made_of(run):
+    """What the tooth is made of and wears as."""
+    return "particles" if has_particles(run) else "triangles" if run.parameter("reshape", False) else "kept triangles"
 
 
 # ---- numbers
@@ -74,14 +88,18 @@ def key_results(run):
     energy = run.summary.get("audits", {}).get("energy", {})
     step, critical = run.result("time_step"), run.result("critical_time_step")
     wears = run.result("worn_volume") > 0
-    tool = f"{run.result('tool_particles')} particles" if has_particles(run) else f"{run.result('facets')} triangles"
+    if has_particles(run):
+        tool = f"{run.result('tool_particles')} particles"
+        depth_remark, mass_remark = f"M 13.3: {quantity(M_DEPTH, 'm')}", f"{run.result('particles_removed')} particles removed"
+    else:
+        tool = f"{run.result('facets')} triangles"
+        depth_remark, mass_remark = "of the surface", f"{quantity(run.result('worn_volume'), 'm3')} by the wear law"
     return tiles([
         *[(label, quantity(run.result(name), "N"), "while it cuts") for label, name in (
             ("mean cutting force", "mean_cutting_force"), ("peak cutting force", "peak_cutting_force"),
             ("mean thrust force", "mean_thrust_force"))],
-        *([("maximum wear depth", quantity(run.result("maximum_wear_depth"), "m"), f"M 13.3: {quantity(M_DEPTH, 'm')}"),
-           ("mass lost", percent(run.result("mass_lost"), 1.0), f"{run.result('particles_removed')} particles removed")]
-          if wears and has_particles(run) else []),
+        *([("maximum wear depth", quantity(run.result("maximum_wear_depth"), "m"), depth_remark),
+           ("mass lost", percent(run.result("mass_lost"), 1.0), mass_remark)] if wears else []),
         *([] if loose(run) else [("cracks", f"{run.result('tensile_cracks')} + {run.result('shear_cracks')}", "tensile + shear")]),
         ("spheres of rock", number(run.result("rock_particles")), f"tooth: {tool}"),
         ("time step", f"{number(1e6 * step)} µs", f"{percent(step, critical)} of the critical"),
@@ -306,6 +324,69 @@ def wear(run):
         axes.set_title(title)
     figure.colorbar(ScalarMappable(norm, WEAR), ax=panels, label="worn depth / mm", shrink=0.7)
     return figure
+
+
+def facet_depth(run, shot):
+    """(m,) m worn off the triangles: how far the surface has gone back from their first corners, in the mean; of a shape that
+    is kept, the volume over the area."""
+    first, facets = run.model["tool_vertices"], run.model["tool_facets"]
+    if made_of(run) == "triangles":
+        return worn_depth(first, shot["tool_vertices"], facets)[facets].mean(axis=1)
+    return shot["worn_volume"] / np.linalg.norm(area_vectors(first, facets), axis=1)
+
+
+def worn_triangles(run):
+    """The tooth of triangles at the end, coloured by its worn depth, and what has become of its outline."""
+    if has_particles(run) or not run.result("maximum_wear_depth") > 0:
+        return None
+    shot, facets = run.snapshot(-1), run.model["tool_facets"]
+    depth = MM * facet_depth(run, shot)
+    norm = Normalize(0, MM * run.result("maximum_wear_depth"))
+    rows = 2 if made_of(run) == "triangles" else 1
+    figure = Figure(figsize=(12, 4.6 * rows), layout="constrained")
+    seen = [figure.add_subplot(rows, 2, k, projection="3d") for k in (1, 2)]
+    for axes, (elevation, title) in zip(seen, ((15, "from in front"), (-35, "from in front and below"))):
+        solid(axes, shot["tool_vertices"], facets, WEAR(norm(depth))[:, :3])
+        axes.view_init(elevation, -40)
+        axes.set_title(title)
+    figure.colorbar(ScalarMappable(norm, WEAR), ax=seen, label="worn depth / mm", shrink=0.7)
+    if rows == 2:
+        sections_of_tool(run, [figure.add_subplot(2, 2, k) for k in (3, 4)])
+    return figure
+
+
+def solid(axes, vertices, facets, colours):
+    """Triangles in a perspective view, shaded by their slope; y is drawn upwards."""
+    corners = MM * vertices[:, [0, 2, 1]] * (1, -1, 1)
+    normal = np.cross(*np.diff(corners[facets], axis=1).transpose(1, 0, 2))
+    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+    light = 0.92 + 0.08 * normal @ (0.64, -0.48, 0.6)
+    axes.add_collection3d(Poly3DCollection(corners[facets], facecolors=colours * light[:, None], edgecolors="#00000030",
+                                            linewidths=0.4))
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
+    axes.set_box_aspect(high - low)
+    axes.axis("off")
+
+
+def sections_of_tool(run, panels):
+    """The tooth's section in its middle plane, new and at instants of the cut: whole, and where it wears."""
+    first, facets = run.model["tool_vertices"], run.model["tool_facets"]
+    # Beside the plane that many vertices lie in.
+    middle = 1e-6 * np.ptp(first[:, 2])
+    numbers = spread(range(len(run.times)), 5)
+    for axes in panels:
+        axes.add_collection(LineCollection(MM * shapes.section(first, facets, middle), color="black", linestyle="--",
+                                           linewidth=1, zorder=5, label="new"))
+        for k, colour in zip(numbers[1:], colormaps["plasma"](np.linspace(0.1, 0.85, len(numbers) - 1))):
+            lines = MM * shapes.section(run.snapshot(k)["tool_vertices"], facets, middle)
+            axes.add_collection(LineCollection(lines, color=colour, linewidth=1.6, label=f"t = {number(run.times[k])} s"))
+    depth = worn_depth(first, run.snapshot(-1)["tool_vertices"], facets)
+    near = MM * first[depth > 0.1 * depth.max()]
+    for axes, points, title in zip(panels, (MM * first, near), ("section in the middle plane", "where it is worn")):
+        (left, low), (right, high) = points[:, :2].min(axis=0), points[:, :2].max(axis=0)
+        limits(axes, (left - 3, right + 3, low - 3, high + 3), title)
+    panels[1].legend(loc="center left", bbox_to_anchor=(1.02, 0.5))
 
 
 def wear_over_height(run):

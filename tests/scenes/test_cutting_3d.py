@@ -5,7 +5,10 @@ import signal
 import numpy as np
 import pytest
 
-from rockwear.report.folder import read_history
+from rockwear.facet_tool import read_stl, write_stl
+from rockwear.kernels.boundary import area_vectors, check_boundary, distance, volume
+from rockwear.report import space
+from rockwear.report.folder import RunFolder, read_history
 
 from .conftest import (ROOT, arguments, assert_as_if_never_stopped, finish, history, interrupt_script, run_script,
                        start)
@@ -13,6 +16,9 @@ from .conftest import (ROOT, arguments, assert_as_if_never_stopped, finish, hist
 BONDED = dict(width=0.28, height=0.1, depth=0.16, coarsening=1, radius=0.012, tool_radius=3e-3, breadth=0.04, tooth_height=0.06,
               tooth_width=0.04, depth_of_cut=0.026, lowering_velocity=0.5, velocity=0.5, cut_time=0.09, snapshot_period=0.03)
 """A cut as of M 13.3 through 340 spheres."""
+FACETED = {**{name: v for name, v in BONDED.items() if name != "tool_radius"}, "facet": 0.02, "tool_kn": 1e7, "tool_kt": 1e7}
+"""The same by a tooth of triangles. Contacts are ten times as stiff as M's: overlaps of 12 % of a radius at a sharp edge cost
+the energy book 4 %."""
 LOOSE = dict(width=0.3, height=0.08, depth=0.17, coarsening=1, radius=0.012, breadth=0.04, tooth_height=0.08, tooth_width=0.04,
              depth_of_cut=0.026, freeboard=0.03, settling=0.5, lowering_velocity=0.3, cut_time=0.1, start=0.16, facet=0.03)
 """A fill as of M 13.1."""
@@ -54,21 +60,35 @@ def test_a_tooth_of_particles_breaks_bonds_and_books_its_work(worn):
 
 def test_worn_volume_is_archards_and_none_goes(worn):
     friction = worn.summary["audits"]["friction"]["worn_by"]
-    assert value(worn, "worn_volume") == pytest.approx(5e-9 * friction, rel=1e-9)
+    assert value(worn, "worn_volume") == pytest.approx(5e-9 * friction, rel=1e-9, abs=0)
     assert value(worn, "particles_removed") == 0 and value(worn, "mass_lost") == 0
     shot = last_snapshot(worn.out)
     assert shot["worn_depth"].max() == pytest.approx(value(worn, "maximum_wear_depth"), rel=1e-12)
     # Depth is volume over the square of a sphere.
     radii = np.load(worn.out / "model.npz")["tool_radii"]
-    assert (shot["worn_depth"] * (2 * radii)**2).sum() == pytest.approx(value(worn, "worn_volume"), rel=1e-9)
+    assert (shot["worn_depth"] * (2 * radii)**2).sum() == pytest.approx(value(worn, "worn_volume"), rel=1e-9, abs=0)
 
 
 def test_wear_in_space_is_judged_by_the_rules_of_acceleration(worn):
     columns, units = read_history(worn.out / "wear_profile.csv")
     assert set(units.values()) == {"m3"}
-    assert np.sum(list(columns.values())) == pytest.approx(value(worn, "worn_volume"), rel=1e-9)
+    assert np.sum(list(columns.values())) == pytest.approx(value(worn, "worn_volume"), rel=1e-9, abs=0)
     assert 0 < value(worn, "wear_distribution_error") and value(worn, "trusted_acceleration") > 0
     assert (worn.out / "figures/trust.png").exists()
+
+
+def test_volumes_have_their_unit(worn):
+    assert worn.summary["results"]["worn_volume"]["unit"] == worn.summary["results"]["dropped_volume"]["unit"] == "m3"
+    assert read_history(worn.out / "history.csv")[1]["worn_volume"] == "m3"
+
+
+def test_fewer_samples_of_the_contacts_find_the_same_friction(worn, tmp_path):
+    """Each stands for five steps, its springs those of the step before; with older ones 5 % of the friction goes astray."""
+    run = scene("cutting_3d_wear", tmp_path / "run", sampling_period=5, report="false", **BONDED)
+    assert run.code == 0, run.stderr
+    friction, whole = (r.summary["audits"]["friction"]["tool"] for r in (run, worn))
+    assert friction != whole and friction == pytest.approx(whole, rel=0.01)
+    books_close(run, 0.02)
 
 
 def test_no_wear_without_contact_and_none_above_the_cut(worn):
@@ -101,13 +121,73 @@ def test_particles_go_as_they_wear(tmp_path, rule):
 
 
 def test_a_tooth_of_triangles_makes_a_like_cut(tmp_path, worn):
-    # Contacts ten times as stiff as M's: overlaps of 12 % of a radius at a sharp edge cost the energy book 4 %.
-    values = {**{name: v for name, v in BONDED.items() if name != "tool_radius"}, "tool_kn": 1e7, "tool_kt": 1e7}
-    run = scene("cutting_3d_triangles", tmp_path / "run", facet=0.02, report="false", **values)
+    run = scene("cutting_3d_triangles", tmp_path / "run", report="false", **FACETED)
     assert run.code == 0, run.stderr
     books_close(run, 0.03)
     assert value(run, "tensile_cracks") > 10 and value(run, "worn_volume") == 0
     assert 0.3 < value(run, "mean_cutting_force") / value(worn, "mean_cutting_force") < 3
+
+
+@pytest.fixture(scope="module")
+def blunted(tmp_path_factory):
+    """A tooth of triangles that wears."""
+    run = scene("cutting_3d_triangles", tmp_path_factory.mktemp("blunted") / "run", wear_coefficient=3e-9, reshape="true", **FACETED)
+    assert run.code == 0, run.stderr
+    return run
+
+
+def test_triangles_lose_archards_volume_and_do_not_fold(blunted):
+    model, shot = np.load(blunted.out / "model.npz"), last_snapshot(blunted.out)
+    first, now, facets = model["tool_vertices"], shot["tool_vertices"], model["tool_facets"]
+    mass, friction = (blunted.summary["audits"][name] for name in ("mass", "friction"))
+    assert value(blunted, "worn_volume") == pytest.approx(3e-9 / 0.1 * friction["worn_by"], rel=1e-9, abs=0)
+    assert mass["archard"] == pytest.approx(7830 * value(blunted, "worn_volume"), rel=1e-12, abs=0)
+    gone = 7830 * (volume(first, facets) - volume(now, facets))
+    assert gone + mass["waiting"] == pytest.approx(mass["archard"], rel=1e-9) and gone > 0.9 * mass["archard"]
+    assert value(blunted, "mass_lost") == pytest.approx(gone / mass["initial"], rel=1e-9) and value(blunted, "mass_lost") > 0.004
+    check_boundary(now, facets)
+    assert (np.einsum("ni,ni->n", area_vectors(first, facets), area_vectors(now, facets)) > 0).all()
+    books_close(blunted, 0.03)
+
+
+def test_the_depth_of_wear_is_the_way_from_the_new_surface_to_the_worn_one(blunted):
+    model, shot = np.load(blunted.out / "model.npz"), last_snapshot(blunted.out)
+    first, now = model["tool_vertices"], shot["tool_vertices"]
+    depth = distance(first, now, model["tool_facets"])
+    assert value(blunted, "maximum_wear_depth") == pytest.approx(depth.max(), rel=1e-12)
+    # More than none, and no more than the vertices went.
+    assert 1e-3 < depth.max() <= np.linalg.norm(now - first, axis=1).max()
+    assert "deepest_wear" not in blunted.summary["results"]
+
+
+def test_the_page_shows_where_and_how_deep_triangles_are_worn(blunted):
+    assert (blunted.out / "figures/worn_triangles.png").exists()
+    page = (blunted.out / "report.html").read_text(encoding="utf-8")
+    assert "How far the surface has gone back" in page and "maximum wear depth" in page and "particles removed" not in page
+    front, _, bar, whole, near = space.worn_triangles(RunFolder(blunted.out)).axes
+    triangles, = front.collections
+    assert len(triangles.get_facecolor()) == value(blunted, "facets")
+    assert bar.get_ylim()[1] == pytest.approx(1e3 * value(blunted, "maximum_wear_depth"))
+    assert len(near.get_legend().get_texts()) == len(whole.collections) == 5
+
+
+def test_a_worn_tool_goes_out_and_into_the_next_cut(blunted, tmp_path):
+    """Wherever the file has its origin, the tool stands where the tooth that it was made of stood."""
+    vertices, facets = read_stl(blunted.out / "tool.stl")
+    elsewhere = tmp_path / "elsewhere.stl"
+    write_stl(elsewhere, vertices + [0.3, 0.05, -0.2], facets)
+    own = {name: v for name, v in FACETED.items() if name not in ("breadth", "tooth_height", "tooth_width")}
+    run = scene("cutting_3d_triangles", tmp_path / "run", stl=elsewhere, report="false", **own)
+    assert run.code == 0, run.stderr
+    worn, fed = (dict(np.load(r.out / "model.npz")) for r in (blunted, run))
+    now = last_snapshot(blunted.out)["tool_vertices"]
+    assert volume(fed["tool_vertices"], fed["tool_facets"]) == pytest.approx(volume(now, worn["tool_facets"]), rel=1e-6)
+    assert len(fed["tool_facets"]) < 1.3 * len(worn["tool_facets"])
+    low, high = fed["tool_vertices"].min(axis=0), fed["tool_vertices"].max(axis=0)
+    tip = fed["tool_vertices"][fed["tool_vertices"][:, 1] < 1e-6, 0].max()
+    assert (low[1], tip) == pytest.approx((0, -4e-3), abs=1e-6) and low[2] == pytest.approx(-high[2], rel=1e-6)
+    assert value(run, "mean_cutting_force") > 1000 and not (run.out / "tool.stl").exists()
+    books_close(run, 0.03)
 
 
 def test_a_loose_fill_settles_to_its_weight_and_resists_the_tooth(tmp_path):
@@ -149,7 +229,34 @@ def test_an_interrupted_cut_goes_on_bit_for_bit(tmp_path, name, own):
 
 @pytest.mark.parametrize("name, values, word", [
     ("cutting_3d_wear", dict(cut_time=5), "cut_time"), ("cutting_3d_wear", dict(tool_radius=0.02), "tool_radius"),
+    ("cutting_3d_triangles", dict(sampling_period=2), "sampling_period = 2 steps: must be 1"),
     ("granular_3d", dict(start=0.1), "start"), ("granular_3d", dict(Rn=1), "Rn")])
 def test_what_cannot_be_is_refused(tmp_path, name, values, word):
-    run = scene(name, tmp_path / "run", **{**(LOOSE if name == "granular_3d" else BONDED), **values})
-    assert run.code == 2 and run.stderr.splitlines()[-1].startswith(f"error: {word}")
+    usual = {"granular_3d": LOOSE, "cutting_3d_triangles": FACETED, "cutting_3d_wear": BONDED}[name]
+    run = scene(name, tmp_path / "run", **{**usual, **values})
+    assert run.code == 2 and run.stderr.splitlines()[-1].startswith(f"error: {word}") and not run.out.exists()
+
+
+CUBE = (0.04 * (np.array(list(np.ndindex(2, 2, 2))) - 0.5),
+        np.array([[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1], [2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4],
+                  [1, 5, 7], [1, 7, 3]]))
+"""Vertices and facets of a closed surface, 40 mm wide."""
+
+
+@pytest.mark.parametrize("scale, facets, values, words", [
+    (None, None, {}, "must be a readable STL file"),
+    (1, CUBE[1][:0], {}, "must be a file of triangles"),
+    (1, CUBE[1][1:], {}, "3 open edges: must be closed: it has holes"),
+    (1, np.vstack([CUBE[1][:1, ::-1], CUBE[1][1:]]), {}, "must be of one orientation"),
+    (1, CUBE[1][:, ::-1], {}, "must be oriented with its normals outwards"),
+    (1000, CUBE[1], {}, "40 x 40 x 40 m: must be shorter and narrower than the block, 0.28 x 0.1 x 0.16"),
+    (0.5, CUBE[1], {}, "height of 0.02 m: must be higher than depth_of_cut = 0.026"),
+    (1, CUBE[1], dict(outline="my_tooth.csv"), "must be without outline = my_tooth.csv")])
+def test_an_stl_file_that_cannot_be_the_tool_is_refused_in_a_line(tmp_path, scale, facets, values, words):
+    file = tmp_path / "tool.stl"
+    if scale:
+        write_stl(file, scale * CUBE[0], facets)
+    run = scene("cutting_3d_triangles", tmp_path / "run", stl=file, **FACETED, **values)
+    said = [line for line in run.stderr.splitlines() if "error" in line.lower() or "Traceback" in line]
+    assert run.code == 2 and len(said) == 1 and said[0].startswith(f"error: stl = {file}") and words in said[0]
+    assert not run.out.exists()

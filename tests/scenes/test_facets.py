@@ -6,8 +6,10 @@ from functools import lru_cache
 import numpy as np
 import pytest
 
+from rockwear.kernels.boundary import distance
 from rockwear.kernels.wear_statistics import places
-from rockwear.report.folder import read_history
+from rockwear.report import segments
+from rockwear.report.folder import RunFolder, read_history
 
 from .conftest import ROOT, SMALL, arguments, interrupt_script, run_script
 
@@ -34,6 +36,11 @@ def worn(tmp_path_factory):
 
 def result(run, name):
     return run.summary["results"][name]["value"]
+
+
+def last_snapshot(run):
+    with np.load(sorted((run.out / "snapshots").glob("*.npz"))[-1]) as arrays:
+        return dict(arrays)
 
 
 @pytest.mark.parametrize("kind, ripple, error", [("single", 1e-12, 1e-11), ("chain", 5e-3, 1e-6)])
@@ -74,11 +81,29 @@ def test_the_segments_cut_wear_and_close_their_books(worn):
     assert abs(books["mass"]["shape"]) < 1e-12 * books["mass"]["initial"]
     assert books["mass"]["removed"] > 0.9 * books["mass"]["archard"]
     exact = 0.01128 * 3e4 / 0.839 * books["friction"]["worn_by"] / (515 * 9.80665e6 - 20 / 200 * 6 * 9.80665e6)
-    assert result(worn, "worn_volume") == pytest.approx(exact, rel=1e-12)
+    assert result(worn, "worn_volume") == pytest.approx(exact, rel=1e-12, abs=0)
+    assert worn.summary["results"]["worn_volume"]["unit"] == "m3/m"
+    assert read_history(worn.out / "history.csv")[1]["worn_volume"] == "m3/m"
     assert (worn.out / "report.html").stat().st_size > 0
     # At 30,000 times the face recedes faster than rock slides on it, and the run says so.
     assert result(worn, "recession_per_slip") > 1
     assert any("Accelerate at most" in line for line in worn.summary["warnings"])
+
+
+def test_the_depth_of_wear_is_the_way_from_the_new_outline_to_the_worn_one(worn):
+    model, shot = np.load(worn.out / "model.npz"), last_snapshot(worn)
+    depth = distance(model["tool_vertices"], shot["tool_vertices"], model["tool_facets"])
+    assert 0 < result(worn, "maximum_wear_depth") == pytest.approx(depth.max(), rel=1e-12)
+    assert "deepest_wear" not in worn.summary["results"]
+
+
+def test_the_history_shows_working_hours(worn):
+    figure = segments.history(RunFolder(worn.out))
+    figure.draw_without_rendering()
+    panel = figure.axes[-1]
+    upper, = panel.child_axes
+    assert upper.get_xlabel() == "time × acceleration / h"
+    assert upper.get_xlim() == pytest.approx(np.array(panel.get_xlim()) * 3e4 / 3.6e6)
 
 
 def test_segments_are_judged_by_the_rules_of_acceleration(worn):
@@ -87,11 +112,11 @@ def test_segments_are_judged_by_the_rules_of_acceleration(worn):
         assert "place_0 [m3/m]" in file.readline()
     columns, _ = read_history(worn.out / "wear_profile.csv")
     by_place = np.sum(list(columns.values()), axis=1)
-    assert by_place.sum() == pytest.approx(result(worn, "worn_volume"), rel=1e-12)
+    assert by_place.sum() == pytest.approx(result(worn, "worn_volume"), rel=1e-9, abs=0)
     model = np.load(worn.out / "model.npz")
     middle = model["tool_vertices"][model["tool_facets"]].mean(axis=1)
-    worn_volume = np.load(sorted((worn.out / "snapshots").glob("*.npz"))[-1])["worn_volume"]
-    assert by_place == pytest.approx(np.bincount(places(model["outline"], middle), worn_volume, len(by_place)), rel=1e-12)
+    worn_volume = last_snapshot(worn)["worn_volume"]
+    assert by_place == pytest.approx(np.bincount(places(model["outline"], middle), worn_volume, len(by_place)), rel=1e-9, abs=1e-9 * by_place.sum())
     assert 0 < result(worn, "trusted_acceleration") < 0.1 * 3e4
     assert any("a layer as deep as its facet goes in" in line for line in worn.summary["warnings"])
     assert (worn.out / "figures/trust.png").exists()
@@ -101,8 +126,14 @@ def test_a_half_of_the_work_wears_half(worn, tmp_path):
     run = cut(tmp_path / "out", work_fraction=0.5, reshape="false", cycles=0)
     friction = run.summary["audits"]["friction"]["worn_by"]
     whole = result(worn, "worn_volume") / worn.summary["audits"]["friction"]["worn_by"]
-    assert result(run, "worn_volume") == pytest.approx(0.5 * whole * friction, rel=1e-12)
-    assert result(run, "mass_lost") == 0 and result(run, "deepest_wear") == 0
+    assert result(run, "worn_volume") == pytest.approx(0.5 * whole * friction, rel=1e-12, abs=0)
+    assert result(run, "mass_lost") == 0
+    book = run.summary["audits"]["mass"]
+    assert book["archard"] == book["shape_kept"] == pytest.approx(7830 * result(run, "worn_volume"), rel=1e-12, abs=0)
+    assert book["removed"] == book["unexplained"] == 0
+    model, shot = np.load(run.out / "model.npz"), last_snapshot(run)
+    length = np.linalg.norm(np.diff(model["tool_vertices"][model["tool_facets"]], axis=1)[:, 0], axis=1)
+    assert result(run, "maximum_wear_depth") == pytest.approx((shot["worn_volume"] / length).max(), rel=1e-12, abs=0) and length.max() <= 1e-3
 
 
 def test_stopped_and_resumed_equals_never_stopped(worn, tmp_path):
@@ -114,8 +145,7 @@ def test_stopped_and_resumed_equals_never_stopped(worn, tmp_path):
     assert resumed.code == 0, resumed.stderr
     assert resumed.summary["results"] == worn.summary["results"]
     assert resumed.summary["audits"] == worn.summary["audits"]
-    last = [np.load(sorted((run.out / "snapshots").glob("*.npz"))[-1])["tool_vertices"] for run in (worn, resumed)]
-    assert np.array_equal(*last)
+    assert np.array_equal(*(last_snapshot(run)["tool_vertices"] for run in (worn, resumed)))
 
 
 @pytest.mark.parametrize("kind", ["chain", "triangles"])

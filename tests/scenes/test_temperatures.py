@@ -81,7 +81,7 @@ def test_slower_means_cooler_and_a_held_root_too(passes):
 
 def test_each_field_starts_its_own_wear_with_a_whole_tool(passes):
     columns = history(passes.out)
-    stage, worn, hottest = (columns[name] for name in ("stage [-]", "worn_volume [m3]", "tool_temperature_max [K]"))
+    stage, worn, hottest = (columns[name] for name in ("stage [-]", "worn_volume [m3/m]", "tool_temperature_max [K]"))
     assert worn[stage <= 3].max() < 1e-20 and worn[stage == 4].max() > 1e-9
     assert worn[stage == 5].min() < worn[stage == 4].max()
     profile = np.loadtxt(passes.out / "wear_profile.csv", delimiter=",", skiprows=1)
