@@ -197,8 +197,6 @@ class WornBoundary:
             return False
         stuck = hindrances = 0
         for _ in range(STEPS):
-            self._slide()
-            motion, weights, reach = self._motion()
             self._held_up = np.zeros(len(self.vertices), bool)
             stuck = 0 if self._step(motion, weights, reach) else stuck + 1
             if stuck > 10:
@@ -209,8 +207,12 @@ class WornBoundary:
             if self._held_up.any():
                 hindrances += 1
                 self._spread(2**min(hindrances, 8))
-            if abs(self.pending.sum()) <= 1e-12 * total:
+            finished = abs(self.pending.sum()) <= 1e-12 * total
+            # Last, so that the next demands, made for the facets as they lie then, find them there.
+            self._slide()
+            if finished:
                 return True
+            motion, weights, reach = self._motion()
         return True
 
     def _motion(self):
@@ -317,9 +319,9 @@ class WornBoundary:
             hindered = self._hindered(fresh, (moved != 0).any(axis=1), attempt < ATTEMPTS // 2)
             if not hindered.any():
                 break
-            # First a shorter way, then none, then none for the vertices around either.
+            # First a shorter way, then none.
             part = np.where(hindered, 0.5 * part if attempt < 2 else 0.0, part)
-            self._held_up |= hindered
+            self._held_up |= hindered & (part == 0)
         else:
             return False
         taken = -self._change(fresh - self.vertices)
