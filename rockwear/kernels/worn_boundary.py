@@ -14,7 +14,7 @@ from .checks import ParameterError, within
 STRIDE = 0.2
 """Longest way of a vertex at once, as a part of the smallest altitude around it."""
 LEAST_STRIDE = 1e-4
-"""Wear waits until some vertex has so far to go, as a part of the same altitude: below it the last digit of the
+"""An update waits until some vertex has so far to go, as a part of the same altitude: below it the last digit of the
 coordinates would spoil the volume."""
 EDGE = 0.13
 """Two equal facets make an edge where they meet at more than 40 degrees: they look across their mean normal with
@@ -202,8 +202,8 @@ class WornBoundary:
             if stuck > 10:
                 part = self.volume / self.first_volume
                 raise (WornAway if part < 0.5 else Folded)(
-                    f"its surface can recede no further without a fold, with {100 * part:.3g} % of the volume left; a "
-                    "coarser mesh, or fewer protected vertices, lets it go on")
+                    f"its surface can recede no further without a fold, with {100 * part:.3g} % of the volume left: some "
+                    "part is thinner than its facets; take facets of another size, or wear it less than that")
             if self._held_up.any():
                 hindrances += 1
                 self._spread(2**min(hindrances, 8))
