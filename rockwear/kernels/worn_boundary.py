@@ -404,10 +404,15 @@ class WornBoundary:
 
     def _slide(self):
         """Even out the spacing where vertices crowd, class by class: no two of a class share a facet, and each moves
-        across its own N_j, so that the volume stays."""
-        crowded = altitudes(self.vertices, self.facets) < CROWDED * self.first_altitude
-        if not crowded.any():
-            return
+        across its own N_j, so that the volume stays. Again where they all but meet: no way is longer than a stride."""
+        for _ in range(10):
+            spacing = altitudes(self.vertices, self.facets) / self.first_altitude
+            if spacing.min() < CROWDED:
+                self._slide_once(spacing < CROWDED)
+            if spacing.min() >= 0.5 * TIGHT:
+                return
+
+    def _slide_once(self, crowded):
         near = np.zeros(len(self.vertices), bool)
         near[self.facets[crowded]] = True
         near[self._around[near[self._around[:, 0]], 1]] = True
@@ -438,6 +443,10 @@ class WornBoundary:
         away *= np.minimum(1.0, STRIDE * room / np.maximum(length, STRIDE * room))[:, None]
         fresh = self.vertices.copy()
         fresh[mine] += away
+        folded, back_to_back = self._folded(fresh)
+        stay = np.zeros(n, bool)
+        stay[self.facets[folded]] = stay[self.facets[self._joined[back_to_back]]] = True
+        fresh[stay] = self.vertices[stay]
         if not any(folded.any() for folded in self._folded(fresh)):
             taken = -self._change(fresh - self.vertices)
             self.vertices = fresh
