@@ -98,12 +98,15 @@ def test_the_depth_of_wear_is_the_way_from_the_new_outline_to_the_worn_one(worn)
 
 
 def test_the_history_shows_working_hours(worn):
-    figure = segments.history(RunFolder(worn.out))
+    run = RunFolder(worn.out)
+    figure = segments.history(run)
     figure.draw_without_rendering()
     panel = figure.axes[-1]
     upper, = panel.child_axes
-    assert upper.get_xlabel() == "time × acceleration / h"
-    assert upper.get_xlim() == pytest.approx(np.array(panel.get_xlim()) * 3e4 / 3.6e6)
+    assert upper.get_xlabel() == "working time × acceleration / h"
+    # The receding front gets the time to come to the rock, and that is no work.
+    assert upper.get_xlim() == pytest.approx((0.0, run.column("working_time")[-1] * 3e4 / 3600), rel=1e-6)
+    assert result(worn, "working_time") == pytest.approx(1e-3, rel=1e-3) and result(worn, "simulated_time") > 1.003e-3
 
 
 def test_segments_are_judged_by_the_rules_of_acceleration(worn):
