@@ -12,7 +12,7 @@ class FacetTool:
     """A rigid tool whose facets are worn. vertices (n, d) m, facets (m, d), density kg/m3, d = 2 or 3.
 
     It moves in +x, y is up (and z across, in space). The vertices at its top and at its back are held by the shank and
-    never move, unless `protected` (n,) bool says others.
+    leave its faces never, unless `protected` (n,) bool says others.
     """
 
     def __init__(self, *, vertices, facets, density, protected=None):

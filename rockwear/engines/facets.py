@@ -245,7 +245,7 @@ class FacetWear(WearEngine):
         except WornAway as end:
             raise RunEnded(f"the tool is worn away at t = {O.time:g} s: {end}", True) from None
         except Folded as end:
-            raise self._too_fast(f"{end}: it is worn through in a thin place, or wears too fast") from None
+            raise RunEnded(f"the tool's shape cannot follow its wear at t = {O.time:g} s: {end}", False) from None
         if moved:
             self.tool.reshape()
             self.contact_energy_removed += stored - self.contact.elastic_energy()
