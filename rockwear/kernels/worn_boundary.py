@@ -48,6 +48,8 @@ more than cos^2(80 degrees) of their weight."""
 THIN = -0.8, -0.88
 """Cosine between the normals of two facets, 37 and 28 degrees of wedge, between which the edge where they meet takes over
 the wear of the vertices beside it."""
+ASTRAY = 0.02
+"""A vertex that would win less than this part of its way goes back along its mean normal instead."""
 SHARP = -0.9
 """Two neighbouring facets do not come nearer to lying back to back than this cosine between their normals, 154 degrees,
 unless they were made so."""
@@ -248,8 +250,13 @@ class WornBoundary:
         sound = (gain > 0.25 * own) & (gain < 4 * own)
         motion = np.where(sound[:, None], motion, -straight)
         weights, motion = self._off_flanks(self._over_dents(own, gradient), motion, normals)
-        gain = -np.einsum("ni,ni->n", gradient, motion)
-        motion = motion * np.where(weights > 0, weights / np.where(weights > 0, gain, 1.0), 0.0)[:, None]
+        # Across the surface nothing is won; what a vertex cannot take on any way stays pending.
+        way, straight = _directions(motion), _directions(-straight)
+        least = ASTRAY * np.linalg.norm(gradient, axis=1)
+        way = np.where((-np.einsum("ni,ni->n", gradient, way) > least)[:, None], way, straight)
+        gain = -np.einsum("ni,ni->n", gradient, way)
+        weights = np.where(gain > least, weights, 0.0)
+        motion = way * (weights / np.where(gain > least, gain, 1.0))[:, None]
         return motion, weights, np.linalg.norm(motion, axis=1) / self._room()
 
     def _shares(self, areas):
@@ -498,6 +505,12 @@ class WornBoundary:
         self.vertices, self.pending = state["vertices"].copy(), state["pending"].copy()
         for name in ("kept", "archard_volume", "removed"):
             setattr(self, name, float(state[name]))
+
+
+def _directions(vectors):
+    """(n, d) of length 1, or 0 where the vectors are none."""
+    size = np.linalg.norm(vectors, axis=1)
+    return vectors / np.where(size > 0, size, 1.0)[:, None]
 
 
 def _bend(areas, pairs):
