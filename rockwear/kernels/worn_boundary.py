@@ -451,7 +451,8 @@ class WornBoundary:
         ways = self._ways[mine]
         along = np.einsum("nij,nik,nk->nj", frames, ways, mean - self.vertices[mine])
         room = self._room()[mine]
-        tight = room < TIGHT * self.first_room[mine]
+        # Not round an edge of a protected face: its rim, a corner cut off, would leave no room for the facets behind it.
+        tight = (room < TIGHT * self.first_room[mine]) & ~self.protected[mine]
         away = 0.5 * np.einsum("nij,nj->ni", frames, np.where((values < FLAT * values[:, -1:]) | tight[:, None], along, 0.0))
         away = np.einsum("nij,nj->ni", ways, away)
         gradient = self._sum(np.repeat(areas, self.dimension, axis=0), self.facets.ravel())[mine]
