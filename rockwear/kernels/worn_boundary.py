@@ -48,6 +48,8 @@ more than cos^2(80 degrees) of their weight."""
 THIN = -0.8, -0.88
 """Cosine between the normals of two facets, 37 and 28 degrees of wedge, between which the edge where they meet takes over
 the wear of the vertices beside it."""
+ASTRAY = 0.02
+"""A vertex that would win less than this part of its way goes back along its mean normal instead."""
 SHARP = -0.9
 """Two neighbouring facets do not come nearer to lying back to back than this cosine between their normals, 154 degrees,
 unless they were made so."""
@@ -69,7 +71,7 @@ class WornBoundary:
 
     A facet all of whose vertices are protected is protected: it is never worn and keeps its plane (its line). It gets
     shorter as the worn surface beside it retreats: a vertex of worn and protected facets slides along the protected
-    ones, to the corner where they end, and the vertices behind it follow, hung on one another by equal springs. A
+    ones, to the corner where they end, and the vertices behind it follow, each the same mean of its neighbours. A
     protected vertex of no protected facet, or of facets in more planes than leave a way, never moves.
 
     A vertex moves so that each facet around it recedes by its own depth, volume over area, as nearly as one motion
@@ -80,7 +82,7 @@ class WornBoundary:
     Where a step would fold a facet, or make two run through each other where a part has become thin, the vertices in
     question stay behind, and the facets around take over their wear. A feather edge is blunted.
 
-    An update that moves vertices takes all that is due, to round-off. Below LEAST_STRIDE nothing moves, and a later
+    An update that moves vertices takes all that is due, to round-off, in STEPS strides at most. Below LEAST_STRIDE nothing moves, and a later
     update makes up for it: what waits by then is less than LEAST_STRIDE times the area of the worn facets times the
     largest of their altitudes. `pending` holds it by facet; `kept` is what fell on protected facets.
     Raises ParameterError for a boundary that is open, folded, or not oriented outwards, or with no free vertex.
@@ -96,7 +98,7 @@ class WornBoundary:
                                  "a flag for each vertex that leaves at least one free")
         self.bare = self.protected[self.facets].all(axis=1)
         self._ways = self._ways_left()
-        self._followers = self._springs()
+        self._followers = self._hangers()
         self.first_altitude = altitudes(self.vertices, self.facets)
         self.first_room = self._room()
         self.first_volume = volume(self.vertices, self.facets)
@@ -120,9 +122,13 @@ class WornBoundary:
         left = (values <= PLANE * values[:, -1:]) & (values[:, -1:] > 0) | ~self.protected[:, None]
         return np.einsum("nij,nj,nkj->nik", frames, left, frames)
 
-    def _springs(self):
-        """(solve, drive, (k,) numbers) for the protected vertices that no worn facet touches: each hangs on its
-        neighbours by equal springs, so that they give way to the rim evenly, within their planes. None without any."""
+    def _hangers(self):
+        """(solve, drive, (k,) numbers) for the protected vertices that no worn facet touches: each stays the same mean of
+        its neighbours, so that they give way to the rim within their planes. None without any.
+
+        The weights of the mean are Floater's mean value coordinates (2003), (tan(a/2) + tan(b/2)) / length with the
+        angles a and b on either side of the edge: positive, so that no facet within a convex rim folds.
+        """
         n, d = self.vertices.shape
         held = self.facets[self.bare]
         inner = np.zeros(n, bool)
@@ -131,7 +137,14 @@ class WornBoundary:
         if not inner.any():
             return None
         j, k = np.concatenate([held[:, [a, b]] for a in range(d) for b in range(d) if a != b]).T
-        spring = coo_matrix((np.ones(len(j)), (j, k)), (n, n)).tocsr()
+        weight = 1 / np.linalg.norm(self.vertices[k] - self.vertices[j], axis=1)
+        if d == 3:
+            third = np.tile(held.sum(axis=1), 6) - j - k
+            along, beside = ((self.vertices[other] - self.vertices[j]) for other in (k, third))
+            along, beside = (rows / np.linalg.norm(rows, axis=1)[:, None] for rows in (along, beside))
+            # tan(a/2) of the angle between two unit vectors
+            weight *= np.linalg.norm(along - beside, axis=1) / np.linalg.norm(along + beside, axis=1)
+        spring = coo_matrix((weight, (j, k)), (n, n)).tocsr()
         spring = kron(coo_matrix((spring.sum(axis=1).A1, (np.arange(n),) * 2), (n, n)) - spring, np.eye(d)).tocsr()
         numbers = np.flatnonzero(inner)
         rows = (d * numbers[:, None] + np.arange(d)).ravel()
@@ -141,11 +154,14 @@ class WornBoundary:
         return splu(matrix.tocsc()).solve, drive, numbers
 
     def _followed(self, motion):
-        """The motion (n, d) with that of the protected vertices that follow the rim of what is worn."""
-        if self._followers is not None:
-            solve, drive, numbers = self._followers
-            motion = motion.copy()
-            motion[numbers] = -solve(drive @ motion.ravel()).reshape(-1, self.dimension)
+        """The motion (n, d) and that by which protected vertices follow the rim of what is worn."""
+        if self._followers is None:
+            return motion
+        solve, drive, numbers = self._followers
+        led = motion.copy()
+        led[numbers] = 0.0
+        motion = motion.copy()
+        motion[numbers] -= solve(drive @ led.ravel()).reshape(-1, self.dimension)
         return motion
 
     def _neighbours(self):
@@ -161,14 +177,12 @@ class WornBoundary:
         return np.unique(np.concatenate(pairs), axis=0)
 
     def _colour(self):
-        """Sets of vertices that move by themselves, no two of which share a facet."""
-        inner = np.ones(len(self.vertices), bool)
-        inner[self.facets[~self.bare]] = False
+        """Sets of vertices that can move, no two of which share a facet."""
         colour = np.full(len(self.vertices), -1)
         rings = {}
         for j, k in self._rings().tolist():
             rings.setdefault(j, []).append(k)
-        for j in np.flatnonzero(self._ways.any(axis=(1, 2)) & ~inner).tolist():
+        for j in np.flatnonzero(self._ways.any(axis=(1, 2))).tolist():
             taken = set(colour[rings[j]].tolist())
             colour[j] = next(c for c in range(len(taken) + 1) if c not in taken)
         return [np.flatnonzero(colour == c) for c in range(colour.max() + 1)]
@@ -236,8 +250,13 @@ class WornBoundary:
         sound = (gain > 0.25 * own) & (gain < 4 * own)
         motion = np.where(sound[:, None], motion, -straight)
         weights, motion = self._off_flanks(self._over_dents(own, gradient), motion, normals)
-        gain = -np.einsum("ni,ni->n", gradient, motion)
-        motion = motion * np.where(weights > 0, weights / np.where(weights > 0, gain, 1.0), 0.0)[:, None]
+        # Across the surface nothing is won; what a vertex cannot take on any way stays pending.
+        way, straight = _directions(motion), _directions(-straight)
+        least = ASTRAY * np.linalg.norm(gradient, axis=1)
+        way = np.where((-np.einsum("ni,ni->n", gradient, way) > least)[:, None], way, straight)
+        gain = -np.einsum("ni,ni->n", gradient, way)
+        weights = np.where(gain > least, weights, 0.0)
+        motion = way * (weights / np.where(gain > least, gain, 1.0))[:, None]
         return motion, weights, np.linalg.norm(motion, axis=1) / self._room()
 
     def _shares(self, areas):
@@ -404,7 +423,8 @@ class WornBoundary:
 
     def _slide(self):
         """Even out the spacing where vertices crowd, class by class: no two of a class share a facet, and each moves
-        across its own N_j, so that the volume stays. Again where they all but meet: no way is longer than a stride."""
+        across its own N_j, so that the volume stays. Again and again where they all but meet, as no way is longer than
+        a stride."""
         for _ in range(10):
             spacing = altitudes(self.vertices, self.facets) / self.first_altitude
             if spacing.min() < CROWDED:
@@ -431,7 +451,8 @@ class WornBoundary:
         ways = self._ways[mine]
         along = np.einsum("nij,nik,nk->nj", frames, ways, mean - self.vertices[mine])
         room = self._room()[mine]
-        tight = room < TIGHT * self.first_room[mine]
+        # Not round an edge of a protected face: its rim, a corner cut off, would leave no room for the facets behind it.
+        tight = (room < TIGHT * self.first_room[mine]) & ~self.protected[mine]
         away = 0.5 * np.einsum("nij,nj->ni", frames, np.where((values < FLAT * values[:, -1:]) | tight[:, None], along, 0.0))
         away = np.einsum("nij,nj->ni", ways, away)
         gradient = self._sum(np.repeat(areas, self.dimension, axis=0), self.facets.ravel())[mine]
@@ -441,12 +462,15 @@ class WornBoundary:
         away -= np.where(tilted, np.einsum("ni,ni->n", away, across) / np.where(tilted, square, 1.0), 0.0)[:, None] * across
         length = np.linalg.norm(away, axis=1)
         away *= np.minimum(1.0, STRIDE * room / np.maximum(length, STRIDE * room))[:, None]
-        fresh = self.vertices.copy()
-        fresh[mine] += away
+        motion = np.zeros_like(self.vertices)
+        motion[mine] = away
+        fresh = self.vertices + self._followed(motion)
         folded, back_to_back = self._folded(fresh)
         stay = np.zeros(n, bool)
         stay[self.facets[folded]] = stay[self.facets[self._joined[back_to_back]]] = True
-        fresh[stay] = self.vertices[stay]
+        if stay.any():
+            motion[stay] = 0.0
+            fresh = self.vertices + self._followed(motion)
         if not any(folded.any() for folded in self._folded(fresh)):
             taken = -self._change(fresh - self.vertices)
             self.vertices = fresh
@@ -468,8 +492,9 @@ class WornBoundary:
                 "unexplained": self.first_volume - self.volume + waiting + self.kept - self.archard_volume}
 
     def depth(self, first):
-        """(n,) m by which the vertices have come from `first` (n, d), their places of the beginning."""
-        return np.linalg.norm(self.vertices - first, axis=1)
+        """(n,) m by which the vertices have come from `first` (n, d), their places of the beginning; none for protected
+        ones, which slide in their faces."""
+        return np.where(self.protected, 0.0, np.linalg.norm(self.vertices - first, axis=1))
 
     def state(self):
         """What must survive a restart."""
@@ -481,6 +506,12 @@ class WornBoundary:
         self.vertices, self.pending = state["vertices"].copy(), state["pending"].copy()
         for name in ("kept", "archard_volume", "removed"):
             setattr(self, name, float(state[name]))
+
+
+def _directions(vectors):
+    """(n, d) of length 1, or 0 where the vectors are none."""
+    size = np.linalg.norm(vectors, axis=1)
+    return vectors / np.where(size > 0, size, 1.0)[:, None]
 
 
 def _bend(areas, pairs):

@@ -343,6 +343,7 @@ def test_a_vertex_of_worn_and_protected_facets_slides_along_the_protected_ones(m
     assert boundary.vertices[held, 0] == pytest.approx(0.0, abs=1e-15)
     rim = held & (vertices[:, 1] > 0.00999)
     assert boundary.vertices[rim, 1] == pytest.approx(0.006, abs=1e-4)
+    assert not boundary.depth(vertices)[held].any() and boundary.depth(vertices).max() > 0.0039
     # What lies behind the rim keeps its order and its spacing.
     assert boundary.vertices[held, 1] == pytest.approx(0.6 * vertices[held, 1], abs=4e-4)
 
