@@ -11,8 +11,8 @@ from .kernels.worn_boundary import WornBoundary
 class FacetTool:
     """A rigid tool whose facets are worn. vertices (n, d) m, facets (m, d), density kg/m3, d = 2 or 3.
 
-    It moves in +x, y is up (and z across, in space). The vertices at its top and at its back are held by the shank and
-    leave its faces never, unless `protected` (n,) bool says others.
+    It moves in +x, y is up (and z across, in space). The facets of its top and of its back are held by the shank:
+    they are never worn and stay in their planes, unless `protected` (m,) bool says others.
     """
 
     def __init__(self, *, vertices, facets, density, protected=None):
@@ -21,7 +21,8 @@ class FacetTool:
         self.density = positive("tool_density", density, "kg/m3")
         if protected is None:
             slack = 1e-6 * np.ptp(vertices[:, :2], axis=0).max()
-            protected = (vertices[:, 1] > vertices[:, 1].max() - slack) | (vertices[:, 0] < vertices[:, 0].min() + slack)
+            top, back = vertices[:, 1] > vertices[:, 1].max() - slack, vertices[:, 0] < vertices[:, 0].min() + slack
+            protected = top[facets].all(axis=1) | back[facets].all(axis=1)
         self.boundary = WornBoundary(vertices=vertices, facets=facets, protected=protected)
         self.count = len(facets)
 

@@ -63,7 +63,7 @@ def sharpest(boundary):
     """Smallest cosine between the normals of neighbouring facets."""
     normals = area_vectors(boundary.vertices, boundary.facets)
     normals /= np.linalg.norm(normals, axis=1)[:, None]
-    a, b = boundary._joined.T
+    a, b = boundary.joined.T
     return float(np.einsum("ij,ij->i", normals[a], normals[b]).min())
 
 
@@ -255,8 +255,9 @@ def battered(boundary, centre, reach, part, chance):
     return demanded * part * boundary.first_volume / demanded.sum()
 
 
-def shank(vertices):
-    return (vertices[:, 1] > vertices[:, 1].max() - 1e-9) | (vertices[:, 0] < vertices[:, 0].min() + 1e-9)
+def held(vertices, facets):
+    top, back = vertices[:, 1] > vertices[:, 1].max() - 1e-9, vertices[:, 0] < vertices[:, 0].min() + 1e-9
+    return top[facets].all(axis=1) | back[facets].all(axis=1)
 
 
 def worn_down_to(left, boundary, reach):
