@@ -111,13 +111,13 @@ def flat_of_segments(polygon, size, strip=STRIP):
     boundary = FacetTool.of_outline(polygon, segment=size, density=STEEL.density).boundary
     visits = math.ceil(WORN / (size**2 / 8))
     for _ in range(visits):
-        reach = np.where(boundary.bare, -np.inf, (boundary.vertices @ DOWN)[boundary.facets].mean(axis=1))
+        reach = np.where(boundary.protected, -np.inf, (boundary.vertices @ DOWN)[boundary.facets].mean(axis=1))
         boundary.wear(np.where(np.arange(len(reach)) == np.argmax(reach), WORN / visits, 0.0))
     height, along, low, high = face(polygon)
     across, reach = boundary.vertices @ along, boundary.vertices @ DOWN
     off = reach[(across > low + strip) & (across < high - strip) & (abs(reach - height) < strip)] - height
     return SimpleNamespace(outline=boundary.vertices[shapes.loop(boundary.facets)], off=float(np.sqrt(np.mean(off**2))),
-                           unexplained=(boundary.first_volume - boundary.volume) / WORN - 1)
+                           unexplained=boundary.volume_balance()["unexplained"] / WORN)
 
 
 def flat(polygon, size, seed, strip=STRIP):

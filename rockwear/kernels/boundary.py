@@ -207,12 +207,9 @@ def worn_depth(first, vertices, facets):
     nearest point of the facets as they are now, at `vertices` (n, d).
 
     On a face that is the recession along its normal; at an edge that has become another, the way to the nearest of it. It
-    depends on the two shapes alone: a vertex that only slid along its face has none.
+    depends on the two shapes alone, whatever vertices and facets they are made of.
     """
-    depth = np.zeros(len(first))
-    moved = (np.asarray(vertices) != first).any(axis=1)
-    depth[moved] = distance(first[moved], vertices, facets)
-    return depth
+    return distance(first, vertices, facets)
 
 
 def segments(polygon):

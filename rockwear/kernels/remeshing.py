@@ -6,11 +6,15 @@ edge breaks off.
 """
 import numpy as np
 
-from .boundary import altitudes, area_vectors, check_boundary, crossings, ridges
+from .boundary import altitudes, area_vectors, check_boundary, crossings, distance, ridges
 from .checks import ParameterError
 
 CROWDED = 0.3
 """A facet crowds where its smallest altitude has fallen to this part of what it was at first."""
+OFF = 0.02
+"""The surface leaves none of its old vertices by more than this part of a facet's size, unless facets are TIGHT."""
+TIGHT = 0.1
+"""A facet so small a part of what it was may be relieved at the cost of an edge: that is finer than the facets."""
 RELIEF = 0.95
 """An operation must bring the sum of the reciprocals of these parts, over the facets it changes, down to so much of it."""
 WORTH = 1.3
@@ -57,7 +61,7 @@ class Mesh:
         self.size = altitudes(self.vertices, self.facets)
         self.place, self.pending, self.refused = np.arange(m), np.zeros(m), np.full(m, np.inf)
         self._connect()
-        self.sharp = min(SHARP, bend(self._normals(), self.joined).min() - 0.01)
+        self.sharp = min(SHARP, self.bends(area_vectors(self.vertices, self.facets)).min() - 0.01)
 
     def _connect(self):
         """What follows from which facets there are."""
@@ -70,10 +74,6 @@ class Mesh:
         common = (pairs[:, :, :, None] == pairs[:, ::-1, None, :]).any(axis=3)
         self.seam, self.beside = pairs[:, 0][common[:, 0]].reshape(len(pairs), -1), pairs[~common].reshape(-1, 2)
         self.ways = self._ways_left()
-
-    def _normals(self):
-        areas = area_vectors(self.vertices, self.facets)
-        return areas / np.linalg.norm(areas, axis=1)[:, None]
 
     def _ways_left(self):
         """(n, d, d) projection of each vertex's motion on what its protected facets leave it: all for a vertex of none,
@@ -92,6 +92,21 @@ class Mesh:
     def sum_at_vertices(self, rows):
         """(n, k) sums of rows (m d, k), one for each corner of each facet."""
         return np.column_stack([np.bincount(self.facets.ravel(), column, len(self.vertices)) for column in rows.T])
+
+    def neighbours(self):
+        """[{facets that have a vertex in common with facet k}] by k."""
+        at = [set() for _ in self.vertices]
+        for number, facet in enumerate(self.facets.tolist()):
+            for vertex in facet:
+                at[vertex].add(number)
+        return [set().union(*(at[vertex] for vertex in facet)) - {number}
+                for number, facet in enumerate(self.facets.tolist())]
+
+    def bends(self, areas):
+        """(k,) cosine between the normals of the joined facets, from normals (m, d) of any length."""
+        size = np.linalg.norm(areas, axis=1)
+        one, other = self.joined.T
+        return np.einsum("ni,ni->n", areas[one], areas[other]) / np.maximum(size[one] * size[other], np.finfo(float).tiny)
 
     def slope(self, vertices, normals):
         """(k,) m by which the second of the joined facets rises over the first one's plane: below zero at an edge that
@@ -120,21 +135,36 @@ class Mesh:
         """Let feather edges break off: their vertices go back to between those beside them. -> m3 that is lost."""
         lost = 0.0
         for _ in range(OPERATIONS):
-            normals = self._normals()
-            feather = (bend(normals, self.joined) < self.sharp) & self.ways[self.seam].any(axis=(2, 3)).any(axis=1)
-            feather &= self.slope(self.vertices, normals) < 0
+            areas = area_vectors(self.vertices, self.facets)
+            feather = (self.bends(areas) < self.sharp) & (self.slope(self.vertices, areas) < 0) & self.ways[self.seam].any(axis=(1, 2, 3))
             seam, beside = self.seam[feather], self.beside[feather]
             count = np.bincount(seam.ravel(), minlength=len(self.vertices))[:, None]
             aim = np.zeros_like(self.vertices)
             np.add.at(aim, seam, self.vertices[beside].mean(axis=1)[:, None])
             way = BLUNT * np.einsum("nij,nj->ni", self.ways, aim / np.maximum(count, 1) - self.vertices) * (count > 0)
-            fresh = self.vertices + way
-            if not way.any() or len(crossings(fresh, self.facets, count[:, 0] > 0)):
+            # All of them at once, else as many as can.
+            gone = [self._break_off(way)] if way.any() else []
+            if gone == [0.0]:
+                gone = [self._break_off(way * (np.arange(len(way)) == k)[:, None]) for k in np.flatnonzero(count)]
+            if not any(gone):
                 break
-            star, origin = count[self.facets, 0].any(axis=1), fresh.mean(axis=0)
-            before = self._volume(star, origin)
-            self.vertices = fresh
-            lost += before - self._volume(star, origin)
+            lost += sum(gone)
+        return lost
+
+    def _break_off(self, way):
+        """Move vertices by `way` (n, d) m unless that would fold something. -> m3 that is lost."""
+        moved = way.any(axis=1)
+        fresh = self.vertices + way
+        areas = area_vectors(fresh, self.facets)
+        notch = (self.bends(areas) < SHARP) & (self.slope(fresh, areas) > 0)
+        if notch.any() or len(crossings(fresh, self.facets, moved)):
+            return 0.0
+        star, origin, old = moved[self.facets].any(axis=1), fresh.mean(axis=0), self.vertices
+        before = self._volume(star, origin)
+        self.vertices = fresh
+        lost = before - self._volume(star, origin)
+        if lost <= 0:
+            self.vertices, lost = old, 0.0
         return lost
 
     def _relieve(self, facet, part):
@@ -149,7 +179,7 @@ class Mesh:
         before = {name: getattr(self, name).copy() for name in SHAPE}
         connections = {name: getattr(self, name) for name in CONNECTIONS}
         for way in ways:
-            if way() and self._is_sound(before):
+            if way() and self._is_sound(before, part):
                 return True
             for name, value in before.items():
                 setattr(self, name, value.copy())
@@ -158,8 +188,8 @@ class Mesh:
         return False
 
     def _ranked(self, ends):
-        """The ends of an edge, first the one that is to stay: that with the fewest ways, then the sharper one."""
-        return sorted(ends, key=lambda vertex: (np.trace(self.ways[vertex]).round(), -self._sharpness(vertex)))
+        """The ends of an edge, first the one that is to stay: that with the fewest ways, then a corner, then an edge."""
+        return sorted(ends, key=lambda vertex: (np.trace(self.ways[vertex]).round(), *-self._sharpness(vertex).round(2)))
 
     def _carry(self, keep, gone, part):
         """Take vertex `gone` away to the vertex `keep` beside it, and put it into the longest edge."""
@@ -230,9 +260,9 @@ class Mesh:
             return False
         star = np.flatnonzero((self.facets == c).any(axis=1) | (np.arange(len(self.facets)) == behind))
         origin = self.vertices[c].copy()
-        was = self._volume(star, origin)
+        was, flat = self._volume(star, origin), self._sharpness(c)[-1] < EDGE
         self.facets[facet], self.facets[behind] = (a, e, c), (e, b, c)
-        if self._sharpness(c) < EDGE:
+        if flat:
             along = self.vertices[b] - self.vertices[a]
             foot = self.vertices[a] + along * ((origin - self.vertices[a]) @ along / (along @ along))
             self.vertices[c] += self.ways[c] @ (foot - origin)
@@ -240,19 +270,24 @@ class Mesh:
         return self._restore_volume(c, star, origin, was)
 
     def _sharpness(self, vertex):
-        """How much the facets there look across their mean normal, for what they look along it."""
+        """(d - 1,) how much the facets there look across their mean normal, for what they look along it, the least first:
+        in space none is zero at a corner, only the first at an edge."""
         areas = area_vectors(self.vertices, self.facets[(self.facets == vertex).any(axis=1)])
         values = np.linalg.eigvalsh(np.einsum("ni,nj->ij", areas, areas / np.linalg.norm(areas, axis=1)[:, None]))
-        return values[-2] / values[-1]
+        return values[:-1] / values[-1]
 
-    def _is_sound(self, before):
-        """Whether the facets that are another shape than `before` crowd less, have turned little, protected ones not at
-        all, and neither lie back to back nor run through others."""
+    def _is_sound(self, before, part):
+        """Whether the facets that are another shape than `before` crowd less, lie where the surface was, have turned
+        little, protected ones not at all, and neither close a notch nor run through others."""
         vertices, facets = before["vertices"], before["facets"]
         other = (self.facets != facets).any(axis=1) | (self.vertices[self.facets] != vertices[facets]).any(axis=(1, 2))
         high = altitudes(self.vertices, self.facets[other]) / self.size[other]
         were_high = altitudes(vertices, facets[other]) / before["size"][other]
-        if not high.all() or (1 / high).sum() > RELIEF * (1 / were_high).sum():
+        if not other.any() or not high.all() or (1 / high).sum() > RELIEF * (1 / were_high).sum():
+            return False
+        old = vertices[np.unique(facets[other])]
+        off = OFF if part > TIGHT else 0.5
+        if distance(old, self.vertices, self.facets[other]).max() > off * self.size[other].min():
             return False
         self._connect()
         normals, were = (areas / np.linalg.norm(areas, axis=1)[:, None] for areas in (
@@ -262,9 +297,8 @@ class Mesh:
             least = 1 - 1e-10 if self.protected[k] else TURN
             if not (were[near & (before["protected"] == self.protected[k])] @ normals[k] > least).any():
                 return False
-        pairs, old_pairs = self.joined, joined(facets)
-        sharpest, was = (bend(n, p[other[p].any(axis=1)]).min() for n, p in ((normals, pairs), (were, old_pairs)))
-        if sharpest < min(self.sharp, was):
+        near = other[self.joined].any(axis=1)
+        if ((self.bends(normals) < SHARP) & (self.slope(self.vertices, normals) > 0))[near].any():
             return False
         moved = np.zeros(len(self.vertices), bool)
         moved[self.facets[other]] = True
@@ -280,8 +314,3 @@ def joined(facets):
     owner = np.tile(np.arange(len(facets)), d)
     rows = np.sort(ridges(facets), axis=1) if d == 3 else np.abs(ridges(facets) + 0.5)
     return owner[np.lexsort(rows.T)].reshape(-1, 2)
-
-
-def bend(normals, pairs):
-    """(k,) cosines between the normals of pairs of facets."""
-    return np.einsum("ni,ni->n", normals[pairs[:, 0]], normals[pairs[:, 1]])

@@ -8,7 +8,7 @@ import numpy as np
 
 from .boundary import altitudes, area_vectors, crossings, volume
 from .checks import within
-from .remeshing import EDGE, SHAPE, TURN, Mesh
+from .remeshing import EDGE, SHAPE, SHARP, TURN, Mesh
 
 STRIDE = 0.2
 """Longest way of a vertex at once, as a part of the smallest altitude around it."""
@@ -32,7 +32,7 @@ more than cos^2(80 degrees) of their weight."""
 ASTRAY = 0.02
 """A vertex that would win less than this part of its way goes back along its mean normal instead."""
 BOOKS = "kept", "archard_volume", "removed", "broken_off"
-FAR = 6
+FAR = {2: 6, 3: 3}
 """Facets that run through each other this many facets apart along the surface are two faces: the body is worn through.
 Nearer ones are the flanks of one edge."""
 
@@ -109,7 +109,7 @@ class WornBoundary(Mesh):
             if self._held_up.any():
                 hindrances += 1
                 self._spread(2**min(hindrances, 8))
-            if abs(self.pending.sum()) <= 1e-12 * total:
+            if self.pending.sum() <= 1e-11 * total:
                 break
             self._mend()
             motion, weights, reach = self._motion()
@@ -118,8 +118,8 @@ class WornBoundary(Mesh):
         return True
 
     def _mend(self):
-        self.broken_off += self.blunt()
         self.remeshed += self.even_out()
+        self.broken_off += self.blunt()
 
     def _motion(self):
         """For all that is pending: motion (n, d) m, volume (n,) m3 by vertex, and its reach (n,) over the altitude."""
@@ -262,7 +262,7 @@ class WornBoundary(Mesh):
         for row in through:
             near = np.zeros(len(self.vertices), bool)
             near[row[:-d]] = True
-            for _ in range(FAR):
+            for _ in range(FAR[d]):
                 near[j[near[k]]] = True
             if not near[row[-d:]].any():
                 place = ", ".join(f"{x:.4g}" for x in self.vertices[row].mean(axis=0))
@@ -270,16 +270,18 @@ class WornBoundary(Mesh):
                              f"{100 * self.volume / self.first_volume:.3g} % of the volume left")
 
     def _folded(self, fresh):
-        """(n,) vertices of the facets that on the way to `fresh` turn far or collapse, or go through their neighbour."""
+        """(n,) vertices of the facets that on the way to `fresh` turn far or collapse, or go through their neighbour or
+        close on it in a notch."""
         before, after = area_vectors(self.vertices, self.facets), area_vectors(fresh, self.facets)
         cosine = np.einsum("ni,ni->n", before, after)
         cosine = cosine - TURN * np.linalg.norm(before, axis=1) * np.linalg.norm(after, axis=1)
         height, was = altitudes(fresh, self.facets), altitudes(self.vertices, self.facets)
         folded = np.zeros(len(fresh), bool)
         folded[self.facets[(cosine <= 0) | ((height < SLIVER * self.size) & (height < was))]] = True
-        through = np.einsum("ni,ni->n", after[self.joined[:, 0]], after[self.joined[:, 1]]) < 0
-        through &= self.slope(self.vertices, before) * self.slope(fresh, after) <= 0
-        folded[self.facets[self.joined[through]]] = True
+        was_bent, bent = self.bends(before), self.bends(after)
+        slope = self.slope(fresh, after)
+        through = (bent < 0) & (self.slope(self.vertices, before) * slope <= 0)
+        folded[self.facets[self.joined[through | (bent < SHARP) & (bent < was_bent) & (slope > 0)]]] = True
         return folded
 
     def _spread(self, times):

@@ -5,10 +5,11 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from rockwear.kernels.boundary import (altitudes, area_vectors, check_boundary, crossings, nearest_on_triangle, prism,
+from rockwear.kernels.boundary import (altitudes, area_vectors, check_boundary, crossings, distance, nearest_on_triangle, prism,
                                        refine, segments, volume)
 from rockwear.kernels.checks import ParameterError
 from rockwear.kernels.outline import tooth
+from rockwear.kernels.remeshing import CROWDED, Mesh
 from rockwear.kernels.worn_boundary import LEAST_STRIDE, STRIDE, Folded, WornAway, WornBoundary
 
 SQUARE = np.array([[0, 0], [1, 0], [1, 1], [0, 1.0]]) * 0.01
@@ -110,10 +111,10 @@ def test_damaged_outlines_are_refused(facets, words):
         check_boundary(SQUARE, facets)
 
 
-def test_a_tool_without_a_free_vertex_is_refused():
+def test_a_tool_without_a_free_facet_is_refused():
     vertices, facets = cube()
     with pytest.raises(ParameterError, match="at least one free"):
-        WornBoundary(vertices=vertices, facets=facets, protected=np.ones(len(vertices), bool))
+        WornBoundary(vertices=vertices, facets=facets, protected=np.ones(len(facets), bool))
 
 
 # ---- meshes
@@ -228,10 +229,12 @@ def test_a_cube_worn_evenly_stays_a_cube():
     boundary = WornBoundary(vertices=vertices, facets=facets)
     for _ in range(200):
         boundary.wear(sizes(boundary) * 4e-3 * boundary.first_volume / sizes(boundary).sum())
+    # Facets are a fifth of the side by now, and its edges known to a part of that.
     side = 0.2**(1 / 3) * 0.01
-    assert np.ptp(boundary.vertices, axis=0) == pytest.approx([side] * 3, rel=2e-3)
+    assert np.ptp(boundary.vertices, axis=0) == pytest.approx([side] * 3, rel=1e-2)
     inner = np.abs(boundary.vertices - boundary.vertices.mean(axis=0)).max(axis=1)
-    assert inner == pytest.approx(np.full(len(inner), side / 2), rel=1e-2)
+    assert inner == pytest.approx(np.full(len(inner), side / 2), rel=5e-2)
+    assert np.median(inner) == pytest.approx(side / 2, rel=1e-2)
 
 
 def test_a_worn_face_recedes_and_leaves_its_neighbours_plane():
@@ -263,109 +266,149 @@ def held(vertices, facets):
 def worn_down_to(left, boundary, reach):
     """The boundary after battered wear, checked in each update by its own volume."""
     first, chance = boundary.vertices, np.random.default_rng(5)
+    sharp = sharpest(boundary)
     while boundary.volume > left * boundary.first_volume:
         demanded = battered(boundary, [0, 0], reach, 1e-3, chance)
-        before = boundary.volume
+        before, broken = boundary.volume, boundary.broken_off
         boundary.wear(demanded)
-        assert before - boundary.volume == pytest.approx(demanded[~boundary.bare].sum(), rel=1e-9)
+        lost = before - boundary.volume - (boundary.broken_off - broken)
+        assert lost == pytest.approx(demanded[~boundary.protected].sum(), rel=1e-9)
+        assert sharpest(boundary) > min(-0.9, sharp)
     check_boundary(boundary.vertices, boundary.facets)
-    assert sharpest(boundary) > -0.9
-    held = shank(first)
-    top, back = (first[:, 1] == first[:, 1].max()), (first[:, 0] == first[:, 0].min())
-    assert boundary.vertices[held & top, 1] == pytest.approx(first[held & top, 1], rel=1e-12)
-    assert boundary.vertices[held & back, 0] == pytest.approx(first[held & back, 0], rel=1e-12)
+    there = boundary.vertices[boundary.facets[boundary.protected]]
+    top, back = (abs(there[..., 1] - first[:, 1].max()) < 1e-15), (abs(there[..., 0] - first[:, 0].min()) < 1e-15)
+    assert (top.all(axis=1) | back.all(axis=1)).all() and top.any() and back.any()
     assert abs(boundary.volume_balance()["unexplained"]) < 1e-12 * boundary.first_volume
 
 
 @pytest.mark.parametrize("segment, reach", [(1e-3, 5e-3), (2e-3, 10e-3), (1e-3, 15e-3), (2e-3, 20e-3), (1e-3, 25e-3)])
 def test_heavy_uneven_wear_folds_nothing_in_the_plane(segment, reach):
     vertices, facets = refine(*segments(TOOTH), segment)
-    worn_down_to(0.52, WornBoundary(vertices=vertices, facets=facets, protected=shank(vertices)), reach)
+    worn_down_to(0.52, WornBoundary(vertices=vertices, facets=facets, protected=held(vertices, facets)), reach)
 
 
-@pytest.mark.parametrize("size, left", [(5e-3, 0.8), (3e-3, 0.9)])
+@pytest.mark.parametrize("size, left", [(5e-3, 0.7), (3e-3, 0.9)])
 def test_heavy_uneven_wear_folds_nothing_in_space(size, left):
     vertices, facets = prism(TOOTH, 0.02, size)
-    worn_down_to(left, WornBoundary(vertices=vertices, facets=facets, protected=shank(vertices)), 0.02)
+    worn_down_to(left, WornBoundary(vertices=vertices, facets=facets, protected=held(vertices, facets)), 0.02)
 
 
-@pytest.mark.parametrize("segment", [0.5e-3, 1e-3, 2e-3])
-def test_a_clearance_face_worn_evenly_stays_a_line_that_meets_the_back(segment):
+@pytest.mark.parametrize("make, depth", [(lambda: refine(*segments(TOOTH), 0.5e-3), 5e-6),
+                                         (lambda: refine(*segments(TOOTH), 1e-3), 5e-6),
+                                         (lambda: refine(*segments(TOOTH), 2e-3), 5e-6),
+                                         (lambda: prism(TOOTH, 0.01, 4e-3), 5e-5)])
+def test_a_clearance_face_worn_evenly_stays_a_face_that_meets_the_back(make, depth):
     """Exact: the half-plane beyond the line 10 mm inside the old face is gone, what else there was is left."""
-    vertices, facets = refine(*segments(TOOTH), segment)
-    held = shank(vertices)
-    boundary = WornBoundary(vertices=vertices, facets=facets, protected=held)
-    outward = -np.array([math.sin(math.radians(3)), math.cos(math.radians(3))])
+    vertices, facets = make()
+    boundary = WornBoundary(vertices=vertices, facets=facets, protected=held(vertices, facets))
+    outward = np.array([-math.sin(math.radians(3)), -math.cos(math.radians(3)), 0.0][:boundary.dimension])
+
+    def face():
+        areas = area_vectors(boundary.vertices, boundary.facets) @ outward
+        return np.where(~boundary.protected & (areas > 0.8 * sizes(boundary)), areas, 0.0)
+
     for _ in range(500):
-        areas, before = area_vectors(boundary.vertices, facets), boundary.volume
-        demanded = 2e-5 * np.where(areas @ outward > 0.8 * np.linalg.norm(areas, axis=1), areas @ outward, 0.0)
+        before, demanded = boundary.volume + boundary.broken_off, 2e-5 * face()
         boundary.wear(demanded)
-        assert before - boundary.volume == pytest.approx(demanded.sum(), rel=1e-9)
-    areas = area_vectors(boundary.vertices, facets)
-    face = boundary.vertices[facets[areas @ outward > 0.8 * np.linalg.norm(areas, axis=1)]].reshape(-1, 2)
-    depth = (vertices @ outward).max() - face @ outward
-    assert depth[face[:, 0] < -10e-3] == pytest.approx(0.01, abs=5e-6)
-    # At the tip, which the new face cuts, the corner is cut off within a segment.
-    assert depth == pytest.approx(0.01, abs=segment)
-    # The back keeps its line and the spacing of its vertices, and ends where the face meets it.
-    back = np.flatnonzero(vertices[:, 0] == vertices[:, 0].min())
-    back = back[np.argsort(vertices[back, 1])]
-    assert boundary.vertices[back, 0] == pytest.approx(vertices[back, 0], rel=1e-12)
-    corner = vertices[back[0], 1] + 0.01 / math.cos(math.radians(3))
-    assert boundary.vertices[back, 1] == pytest.approx(np.linspace(corner, 0.07, len(back)), abs=5e-6)
+        assert before - boundary.volume - boundary.broken_off == pytest.approx(demanded.sum(), rel=1e-9)
+    corners = boundary.vertices[boundary.facets[face() > 0]].reshape(-1, boundary.dimension)
+    gone = (vertices @ outward).max() - corners @ outward
+    assert gone[corners[:, 0] < -15e-3] == pytest.approx(0.01, abs=depth)
+    # The back keeps its line (plane), and ends where the face meets it.
+    back = boundary.vertices[boundary.facets[boundary.protected]].reshape(-1, boundary.dimension)
+    back = back[back[:, 0] < -0.0449]
+    assert back[:, 0] == pytest.approx(-0.045, abs=1e-15)
+    assert back[:, 1].min() == pytest.approx(vertices[vertices[:, 0] < -0.0449, 1].min() + 0.01 / math.cos(math.radians(3)),
+                                             abs=10 * depth)
+    assert boundary.broken_off < 1e-3 * boundary.removed
 
 
 @pytest.mark.parametrize("make", [lambda: refine(*segments(BLADE), 1e-3), lambda: prism(BLADE, 0.01, 2e-3)])
 def test_a_blade_worn_through_from_both_sides_ends_before_its_faces_cross(make):
     vertices, facets = make()
-    boundary = WornBoundary(vertices=vertices, facets=facets, protected=vertices[:, 1] > BLADE[:, 1].max() - 1e-9)
+    boundary = WornBoundary(vertices=vertices, facets=facets, protected=(vertices[facets, 1] > BLADE[:, 1].max() - 1e-9).all(axis=1))
     away = vertices[facets].mean(axis=1) - [0, 0.01, 0][:vertices.shape[1]]
     sides = abs(area_vectors(vertices, facets)[:, 0]) * np.exp(-((away / 3e-3)**2)[:, 1:].sum(axis=1))
-    with pytest.raises(Folded):
+    with pytest.raises(Folded, match="worn through"):
         for _ in range(400):
-            boundary.wear(sides * 2e-3 * boundary.first_volume / sides.sum())
+            boundary.wear(sides[boundary.place] * 2e-3 * boundary.first_volume / sides.sum())
     assert boundary.volume > 0.5 * boundary.first_volume
-    assert len(crossings(boundary.vertices, facets)) == 0
+    assert len(crossings(boundary.vertices, boundary.facets)) == 0
     assert abs(boundary.volume_balance()["unexplained"]) < 1e-12 * boundary.first_volume
 
 
 @pytest.mark.parametrize("make", [lambda: refine(*segments(SQUARE), 1e-3), cube])
 def test_a_vertex_of_worn_and_protected_facets_slides_along_the_protected_ones(make):
     vertices, facets = make()
-    held = vertices[:, 0] < 1e-9
-    boundary = WornBoundary(vertices=vertices, facets=facets, protected=held)
-    bare = held[facets].all(axis=1)
+    boundary = WornBoundary(vertices=vertices, facets=facets, protected=(vertices[facets, 0] < 1e-9).all(axis=1))
+    count = int(boundary.protected.sum())
     for _ in range(40):
-        upward = np.maximum(area_vectors(boundary.vertices, facets)[:, 1], 0) * ~bare
-        boundary.wear(upward * 1e-4 + 1e-12 * bare)
-    assert boundary.kept == pytest.approx(40e-12 * bare.sum(), rel=1e-12)
+        upward = np.maximum(area_vectors(boundary.vertices, boundary.facets)[:, 1], 0)
+        boundary.wear(upward * 1e-4 * ~boundary.protected + 1e-12 * boundary.protected)
+    assert 20e-12 * count < boundary.kept < 40.1e-12 * count
     assert boundary.removed == pytest.approx(0.4 * boundary.first_volume, rel=1e-2)
     assert boundary.removed + boundary.pending.sum() + boundary.kept == pytest.approx(boundary.archard_volume, rel=1e-9)
-    assert boundary.vertices[held, 0] == pytest.approx(0.0, abs=1e-15)
-    rim = held & (vertices[:, 1] > 0.00999)
-    assert boundary.vertices[rim, 1] == pytest.approx(0.006, abs=1e-4)
-    assert not boundary.depth(vertices)[held].any() and boundary.depth(vertices).max() > 0.0039
-    # What lies behind the rim keeps its order and its spacing.
-    assert boundary.vertices[held, 1] == pytest.approx(0.6 * vertices[held, 1], abs=4e-4)
+    wall = boundary.vertices[boundary.facets[boundary.protected]].reshape(-1, boundary.dimension)
+    assert wall[:, 0] == pytest.approx(0.0, abs=1e-15) and wall[:, 1].max() == pytest.approx(0.006, abs=1e-5)
+    # What is missed there has gone where it was: no face is without.
+    assert boundary.protected.sum() < count and (altitudes(boundary.vertices, boundary.facets) > 0.2 * boundary.size).all()
 
 
-def test_a_protected_vertex_without_a_protected_facet_stays():
-    vertices, facets = refine(*segments(SQUARE), 1e-3)
-    held = np.arange(len(vertices)) == 5
-    boundary = WornBoundary(vertices=vertices, facets=facets, protected=held)
-    boundary.wear(sizes(boundary) * 1e-4)
-    assert np.array_equal(boundary.vertices[held], vertices[held])
-    assert boundary.removed == pytest.approx(boundary.archard_volume, rel=1e-9)
+@pytest.mark.parametrize("make, off", [(lambda: refine(*segments(TOOTH), 1e-3), 1e-8), (cube, 5e-5)])
+def test_crowded_facets_are_given_to_where_they_are_missed_and_nothing_else_changes(make, off):
+    mesh = Mesh(vertices=make()[0], facets=make()[1])
+    first, facets, chance = mesh.vertices.copy(), mesh.facets.copy(), np.random.default_rng(2)
+    mesh.pending = chance.random(len(facets))
+    # Vertices of flat places go to one of their neighbours, nearly: the shape is the same, the facets are crowded.
+    for vertex in chance.permutation(len(first))[:len(first) // 4]:
+        if mesh._sharpness(vertex)[-1] < 1e-12:
+            to = chance.choice(mesh.around[mesh.around[:, 0] == vertex, 1])
+            mesh.vertices[vertex] += 0.9 * (mesh.vertices[to] - mesh.vertices[vertex])
+            if (altitudes(mesh.vertices, facets) < 0.02 * mesh.size).any() or len(crossings(mesh.vertices, facets)):
+                mesh.vertices[vertex] = first[vertex]
+    crowded = (altitudes(mesh.vertices, facets) < CROWDED * mesh.size).sum()
+    before = exact_volume(mesh.vertices, mesh.facets)
+    assert crowded > 10 and mesh.even_out()
+    while mesh.even_out():
+        pass
+    assert (altitudes(mesh.vertices, mesh.facets) < CROWDED * mesh.size).sum() < 0.2 * crowded
+    check_boundary(mesh.vertices, mesh.facets)
+    assert abs(float(exact_volume(mesh.vertices, mesh.facets) - before)) < 1e-14 * float(before)
+    assert max(distance(mesh.vertices, first, facets).max(), distance(first, mesh.vertices, mesh.facets).max()) < off
+    assert mesh.pending.sum() == pytest.approx(np.random.default_rng(2).random(len(facets)).sum(), rel=1e-12)
+    # A facet is booked for the first one that it lies on.
+    middle = mesh.vertices[mesh.facets].mean(axis=1)
+    assert np.linalg.norm(middle - first[facets[mesh.place]].mean(axis=1), axis=1).max() < 0.02
+
+
+@pytest.mark.parametrize("make", [lambda: refine(*segments(BLADE), 1e-3), lambda: prism(BLADE, 0.01, 2e-3)])
+@pytest.mark.parametrize("reach", [2e-3, 4e-3])
+def test_a_feather_edge_breaks_off_and_is_no_wear(make, reach):
+    """The blade's sides are worn, most at the end, which nothing rubs: it becomes a wedge, then a feather."""
+    vertices, facets = make()
+    boundary = WornBoundary(vertices=vertices, facets=facets)
+    while boundary.volume > 0.7 * boundary.first_volume:
+        height = boundary.vertices[boundary.facets].mean(axis=1)[:, 1]
+        sides = abs(area_vectors(boundary.vertices, boundary.facets)[:, 0]) * np.exp(-height / reach)
+        boundary.wear(1e-3 * boundary.first_volume * sides / sides.sum())
+        assert sharpest(boundary) > -0.9
+    check_boundary(boundary.vertices, boundary.facets)
+    balance = boundary.volume_balance()
+    assert 0 < balance["broken_off"] < 0.1 * balance["removed"]
+    assert balance["removed"] + balance["waiting"] == pytest.approx(balance["archard"], rel=1e-9)
+    assert abs(balance["unexplained"]) < 1e-12 * boundary.first_volume
+    # The end has gone back by about the length over which it is worn.
+    assert 0.3 * reach < boundary.vertices[:, 1].min() < 3 * reach
 
 
 def test_what_waits_is_less_than_the_least_stride_of_a_layer_of_facets():
     vertices, facets = refine(*segments(TOOTH), 1e-3)
-    boundary = WornBoundary(vertices=vertices, facets=facets, protected=shank(vertices))
+    boundary = WornBoundary(vertices=vertices, facets=facets, protected=held(vertices, facets))
     chance, moved = np.random.default_rng(5), 0
     for _ in range(300):
         moved += boundary.wear(battered(boundary, [0, 0], 0.01, 1e-8, chance))
-        worn = ~boundary.bare
-        layer = sizes(boundary)[worn].sum() * altitudes(boundary.vertices, facets)[worn].max()
+        worn = ~boundary.protected
+        layer = sizes(boundary)[worn].sum() * altitudes(boundary.vertices, boundary.facets)[worn].max()
         assert boundary.pending.sum() < LEAST_STRIDE * layer
     assert 2 < moved < 150
 

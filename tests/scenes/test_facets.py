@@ -91,7 +91,7 @@ def test_the_segments_cut_wear_and_close_their_books(worn):
 
 def test_the_depth_of_wear_is_the_way_from_the_new_outline_to_the_worn_one(worn):
     model, shot = np.load(worn.out / "model.npz"), last_snapshot(worn)
-    depth = distance(model["tool_vertices"], shot["tool_vertices"], model["tool_facets"])
+    depth = distance(model["tool_vertices"], shot["tool_vertices"], shot["tool_facets"])
     assert 0 < result(worn, "maximum_wear_depth") == pytest.approx(depth.max(), rel=1e-12)
     assert "deepest_wear" not in worn.summary["results"]
 
