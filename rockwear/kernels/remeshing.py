@@ -136,13 +136,14 @@ class Mesh:
         lost = 0.0
         for _ in range(OPERATIONS):
             areas = area_vectors(self.vertices, self.facets)
-            feather = (self.bends(areas) < self.sharp) & (self.slope(self.vertices, areas) < 0) & self.ways[self.seam].any(axis=(1, 2, 3))
+            feather = (self.bends(areas) < self.sharp) & (self.slope(self.vertices, areas) < 0)
+            feather &= self.ways[self.seam].any(axis=(1, 2, 3))
             seam, beside = self.seam[feather], self.beside[feather]
             count = np.bincount(seam.ravel(), minlength=len(self.vertices))[:, None]
             aim = np.zeros_like(self.vertices)
             np.add.at(aim, seam, self.vertices[beside].mean(axis=1)[:, None])
             way = BLUNT * np.einsum("nij,nj->ni", self.ways, aim / np.maximum(count, 1) - self.vertices) * (count > 0)
-            # All of them at once, else as many as can.
+            # All of them at once, else as many as can be.
             gone = [self._break_off(way)] if way.any() else []
             if gone == [0.0]:
                 gone = [self._break_off(way * (np.arange(len(way)) == k)[:, None]) for k in np.flatnonzero(count)]
@@ -157,7 +158,7 @@ class Mesh:
         fresh = self.vertices + way
         areas = area_vectors(fresh, self.facets)
         notch = (self.bends(areas) < SHARP) & (self.slope(fresh, areas) > 0)
-        if notch.any() or len(crossings(fresh, self.facets, moved)):
+        if notch[moved[self.seam].any(axis=1) | moved[self.beside].any(axis=1)].any() or len(crossings(fresh, self.facets, moved)):
             return 0.0
         star, origin, old = moved[self.facets].any(axis=1), fresh.mean(axis=0), self.vertices
         before = self._volume(star, origin)
@@ -168,6 +169,7 @@ class Mesh:
         return lost
 
     def _relieve(self, facet, part):
+        """Take away the facet's shortest side, or turn its longest. -> whether that is sound, else nothing has changed."""
         corners = self.facets[facet]
         sides = self.vertices[np.roll(corners, -1)] - self.vertices[corners]
         length = np.linalg.norm(sides, axis=1)

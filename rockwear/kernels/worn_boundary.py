@@ -156,8 +156,8 @@ class WornBoundary(Mesh):
         d = self.dimension
         worn = self.sum_at_vertices(np.repeat(areas * ~self.protected[:, None], d, axis=0))
         way = np.einsum("nij,nj->ni", self.ways, worn)
-        self._gives = np.einsum("ni,ni->n", way, way) > ALONG * np.einsum("ni,ni->n", worn, worn)
-        taking = self._gives[self.facets] & ~self.protected[:, None]
+        gives = np.einsum("ni,ni->n", way, way) > ALONG * np.einsum("ni,ni->n", worn, worn)
+        taking = gives[self.facets] & ~self.protected[:, None]
         return taking / np.maximum(taking.sum(axis=1), 1)[:, None]
 
     def _over_dents(self, weights, gradient):
