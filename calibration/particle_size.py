@@ -9,6 +9,8 @@ Two ways of wearing whose outlines are known exactly, whatever the particles:
 - pattern: the friction work that a cut of the test tooth in miniature spreads along the outline, smoothed, wears it
   along its normals. The depth d at the curvature c takes the volume d - c d^2 / 2 off a length.
 
+Flat is tried with segments of the same sizes too: both descriptions of the tooth must end at one outline.
+
 Sizes are mean diameters. Leaves particle_size.png and particle_size.md in DIR.
 """
 import math
@@ -24,6 +26,7 @@ from scipy.optimize import brentq
 from scipy.spatial import cKDTree
 
 from calibration.runs import Runs
+from rockwear.facet_tool import FacetTool
 from rockwear.kernels.outline import area, tooth
 from rockwear.materials import STEEL
 from rockwear.report import plots, shapes
@@ -96,14 +99,33 @@ def unexplained(tool):
     return book["unexplained"] / book["archard"]
 
 
+def face(polygon):
+    """The exact flat face: its height (m) along DOWN, the direction along it, and its ends (m) in that direction."""
+    target, height = exact(polygon, WORN)
+    along = np.array([DOWN[1], -DOWN[0]])
+    return height, along, *sorted(float(p @ along) for p in target if abs(p @ DOWN - height) < 1e-9)
+
+
+def flat_of_segments(polygon, size, strip=STRIP):
+    """As `flat`, of segments: the one that reaches furthest wears."""
+    boundary = FacetTool.of_outline(polygon, segment=size, density=STEEL.density).boundary
+    visits = math.ceil(WORN / (size**2 / 8))
+    for _ in range(visits):
+        reach = np.where(boundary.protected, -np.inf, (boundary.vertices @ DOWN)[boundary.facets].mean(axis=1))
+        boundary.wear(np.where(np.arange(len(reach)) == np.argmax(reach), WORN / visits, 0.0))
+    height, along, low, high = face(polygon)
+    across, reach = boundary.vertices @ along, boundary.vertices @ DOWN
+    off = reach[(across > low + strip) & (across < high - strip) & (abs(reach - height) < strip)] - height
+    return SimpleNamespace(outline=boundary.vertices[shapes.loop(boundary.facets)], off=float(np.sqrt(np.mean(off**2))),
+                           unexplained=boundary.volume_balance()["unexplained"] / WORN)
+
+
 def flat(polygon, size, seed, strip=STRIP):
     """A tooth rubbed on a plane: outline, and how far (m) its face is off the exact one, root mean square of strips."""
     tool = particles(polygon, size, seed, "volume")
     rub(tool, WORN)
     alive = tool.erosion.alive
-    target, height = exact(polygon, WORN)
-    along = np.array([DOWN[1], -DOWN[0]])
-    low, high = sorted(float(p @ along) for p in target if abs(p @ DOWN - height) < 1e-9)
+    height, along, low, high = face(polygon)
     across, reach = tool.positions[alive] @ along, tool.positions[alive] @ DOWN + tool.radii[alive]
     places = np.arange(low + strip, high - strip, strip / 2)
     off = np.array([reach[abs(across - place) < strip / 2].max() - height for place in places])
@@ -194,18 +216,22 @@ def main(folder):
         pattern = Pattern(runs.start("cut", "yade_scripts/test_tooth.py", **CUT).result())
     ways = {"flat": {size: [flat(polygon, size, seed) for seed in SEEDS] for size in SIZES},
             "pattern": {size: [patterned(pattern, polygon, size, seed) for seed in SEEDS] for size in SIZES}}
+    lines_of = {size: flat_of_segments(polygon, size) for size in SIZES}
     off = {name: mean_square(rows) for name, rows in ways.items()}
     lines = ["# Particle size and removal rule", "",
              f"A tooth of 30 x 20 mm, {len(SEEDS)} packings a size. Flat: {1e6 * WORN:g} mm2 rubbed off on a plane. "
              f"Pattern: {1e6 * PATTERN_WORN:g} mm2 worn", "by the friction work of a cut. `off` is the root mean square "
              "distance between the worn face and the exact one.", "",
-             "| mean diameter, mm | flat: off, mm | pattern: off, mm | Archard's volume unexplained, at most |",
-             "|---|---|---|---|"]
+             "| mean diameter, mm | flat: off, mm | pattern: off, mm | Archard's volume unexplained, at most "
+             "| flat, segments of that length: off, mm | unexplained |",
+             "|---|---|---|---|---|---|"]
     for k, size in enumerate(SIZES):
         worst = max(abs(row.unexplained) for rows in ways.values() for row in rows[size])
-        lines.append(f"| {1e3 * size:g} | {1e3 * off['flat'][k]:.3f} | {1e3 * off['pattern'][k]:.3f} | {worst:.0e} |")
+        lines.append(f"| {1e3 * size:g} | {1e3 * off['flat'][k]:.3f} | {1e3 * off['pattern'][k]:.3f} | {worst:.0e} | "
+                     f"{1e3 * lines_of[size].off:.3f} | {abs(lines_of[size].unexplained):.0e} |")
     lines += ["", "Off falls with the size to the power " + " and ".join(
-        f"{rate(off[name]):.2f} ({name})" for name in ways) + ".", "",
+        f"{rate(off[name]):.2f} ({name})" for name in ways)
+        + f" and {rate([lines_of[size].off for size in SIZES]):.2f} (segments).", "",
         "The depth rule instead, 0.5 mm: what it takes off, less Archard's volume, over it.", "",
         "| wear in a visit, of a particle | flat | pattern |", "|---|---|---|"]
     for portion in PORTIONS:
@@ -216,7 +242,7 @@ def main(folder):
     (folder / "particle_size.md").write_text("\n".join(lines) + "\n", encoding="utf-8")
     print("\n".join(lines))
     with matplotlib.rc_context(plots.STYLE):
-        draw(polygon, pattern, ways, off).savefig(folder / "particle_size.png")
+        draw(polygon, pattern, ways, off, lines_of).savefig(folder / "particle_size.png")
 
 
 def closed(outline):
@@ -224,7 +250,7 @@ def closed(outline):
     return 1e3 * np.vstack([outline, outline[:1]]).T
 
 
-def draw(polygon, pattern, ways, off):
+def draw(polygon, pattern, ways, off, lines_of):
     """Outlines worn both ways over the exact ones, and how far they are off, over the size."""
     figure = Figure(figsize=(14, 4.8), layout="constrained")
     left, middle, right = figure.subplots(1, 3, width_ratios=(1, 1, 0.8))
@@ -237,6 +263,9 @@ def draw(polygon, pattern, ways, off):
         axes.plot(*closed(targets[name]), color="black", linewidth=1.6, label="exact")
         for size, colour in zip(SIZES, ("#2c6e91", "#c8a15a", "#b5341d")):
             axes.plot(*closed(rows[size][0].outline), color=colour, linewidth=1.2, label=f"{1e3 * size:g} mm")
+        if name == "flat":
+            axes.plot(*closed(lines_of[SIZES[1]].outline), color="#6a3d9a", linewidth=1.2, linestyle="--",
+                      label=f"segments, {1e3 * SIZES[1]:g} mm")
         axes.set(title=titles[name], aspect="equal", xlabel="mm", xlim=(-13, 1), ylim=(-0.5, 10.5))
         axes.legend(loc="upper left")
     sizes = 1e3 * np.array(SIZES)
@@ -245,9 +274,11 @@ def draw(polygon, pattern, ways, off):
                      label=f"{name}, power {rate(errors):.2f}")
         for size in SIZES:
             right.loglog([1e3 * size] * len(SEEDS), [1e3 * row.off for row in ways[name][size]], ".", color="0.6")
-    right.set(xlabel="mean diameter / mm", ylabel="worn face off the exact one / mm", title="convergence")
+    right.loglog(sizes, [1e3 * lines_of[size].off for size in SIZES], "^--", color="#6a3d9a",
+                 label=f"flat, segments, power {rate([lines_of[size].off for size in SIZES]):.2f}")
+    right.set(xlabel="mean diameter or length / mm", ylabel="worn face off the exact one / mm", title="convergence")
     right.set_xticks(sizes, [f"{s:g}" for s in sizes])
-    right.set_yticks([0.05, 0.1, 0.2, 0.3], ["0.05", "0.1", "0.2", "0.3"])
+    right.set_yticks([0.01, 0.02, 0.05, 0.1, 0.2, 0.3], ["0.01", "0.02", "0.05", "0.1", "0.2", "0.3"])
     right.minorticks_off()
     right.legend()
     return figure

@@ -36,6 +36,8 @@ GUIDE_PERIOD = 100
 """Steps N between the corners of a curved path, which chords leave by (v dt N)^2 / 8R: 23 nm at P's pick (5.7 m/s, 0.7 m)."""
 PROFILE_PERIOD = 10
 """Visits of the wear between rows of its profile."""
+ENERGY_MISSED = 0.05
+"""Part of its largest entry that the energy book may miss without a warning."""
 
 PARAMETERS = [
     # rock
@@ -636,8 +638,16 @@ class Cutting(scene.Scene):
                 "trusted_acceleration": (trusted, "-")}
 
     def warnings(self):
-        if not self.profile:
-            return []
+        return [*self._missed_energy(), *(self._worn_warnings() if self.profile else [])]
+
+    def _missed_energy(self):
+        book = self.energy_audit()
+        part = book["residual"] / max(abs(value) for value in book.values()) if book["residual"] else 0.0
+        return [] if abs(part) <= ENERGY_MISSED else [
+            f"the energy book misses {100 * part:.2g} % of its largest entry: forces and wear are no better known than that; "
+            "a smaller time_step_fraction may tell why"]
+
+    def _worn_warnings(self):
         short = [] if math.isfinite(self._foremost()) else [
             f"nothing of the tool is left below the rock's surface, of its lowest {self.v.depth_of_cut:g} m: it cuts no more"]
         return [*short, *self.wear.warnings(), *self._distrust()]

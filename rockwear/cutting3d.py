@@ -355,13 +355,14 @@ class TriangleCutting3D(Cutting3D, FacetCutting):
             write_stl(folder / "tool.stl", self.tool.boundary.vertices, self.tool.boundary.facets)
 
     def _tool_model(self):
-        return {"tool_vertices": self.tool.first, "tool_facets": self.tool.boundary.facets}
+        return {"tool_vertices": self.tool.first, "tool_facets": self.tool.first_facets}
 
     def _tool_snapshot(self):
-        return {"tool_vertices": self.tool.boundary.vertices, "worn_volume": self.wear.worn}
+        return {"tool_vertices": self.tool.boundary.vertices, "tool_facets": self.tool.boundary.facets,
+                "worn_volume": self.wear.worn}
 
     def _tool_points(self, shot):
-        return shot["tool_vertices"], {"worn_depth": self.tool.worn_depth}
+        return shot["tool_vertices"], {"worn_depth": self.tool.depth_below}
 
 
 class LooseCutting3D(TriangleCutting3D):

@@ -60,7 +60,7 @@ class FacetCutting(Cutting):
     def _make_tool_engines(self, motion):
         v, tool = self.v, self.tool
         self.bodies = scene.FacetBodies(tool, self.motion)
-        self.contact = FacetContact(tool=self.bodies, motion=motion, needs=self.wear_law.needs, neighbours=tool.neighbours)
+        self.contact = FacetContact(tool=self.bodies, motion=motion, needs=self.wear_law.needs, neighbours=tool.boundary.neighbours())
         self.rock_friction = RockFriction(bonds=self.bonds, motion=motion)
         self.wear = FacetWear(contact=self.contact, boundary=tool.boundary, tool=self.bodies, law=self.wear_law,
                               hardness=self.hardness(v.tool_temperature), work_fraction=v.work_fraction,
@@ -86,11 +86,12 @@ class FacetCutting(Cutting):
     def model(self):
         rock, tool = self.rock, self.tool
         return {"rock_radii": rock.radii, "rock_supported": rock.supported, "bonds": rock.pairs,
-                "box": np.array([rock.width, rock.height]), "tool_vertices": tool.first, "tool_facets": tool.boundary.facets,
+                "box": np.array([rock.width, rock.height]), "tool_vertices": tool.first, "tool_facets": tool.first_facets,
                 "outline": self.outline, "tool_protected": tool.boundary.protected}
 
     def snapshot(self):
-        return {**self._rock_and_pose(), "tool_vertices": self.tool.boundary.vertices, "worn_volume": self.wear.worn}
+        return {**self._rock_and_pose(), "tool_vertices": self.tool.boundary.vertices,
+                "tool_facets": self.tool.boundary.facets, "worn_volume": self.wear.worn}
 
     def write_vtk(self, folder, number):
         """rock.NNNN.vtk and tool.NNNN.vtk: diameter, broken bonds; the tool's vertices."""
@@ -98,7 +99,7 @@ class FacetCutting(Cutting):
         vtk.write(folder / f"rock.{number:04d}.vtk", shot["rock_positions"],
                   {"diameter": 2 * self.rock.radii, "broken_bonds": shot["broken_bonds"]})
         vtk.write(folder / f"tool.{number:04d}.vtk", self.bodies.pose.of(shot["tool_vertices"]),
-                  {"worn_depth": self.tool.worn_depth})
+                  {"worn_depth": self.tool.depth_below})
 
     def _worn_words(self):
         return f"{100 * self.wear.log()['mass_lost'][0]:.2f} % of the tool worn"
@@ -106,7 +107,7 @@ class FacetCutting(Cutting):
     def _worn_results(self):
         # Where the shape is kept, what each facet would have gone back.
         depth = self.tool.worn_depth if self.v.reshape else self.wear.worn / self.tool.areas
-        found = {**self.wear.log(), "facets": (self.tool.count, "-"), "maximum_wear_depth": (float(depth.max()), "m")}
+        found = {**self.wear.log(), "broken_off": (self.tool.boundary.broken_off, self.volume_unit), "facets": (self.tool.count, "-"), "maximum_wear_depth": (float(depth.max()), "m")}
         return {**found, "recession_per_slip": (self.wear.recession, "-")} if self.v.reshape else found
 
     def warnings(self):

@@ -3,7 +3,7 @@ import warnings
 
 import numpy as np
 
-from .kernels.boundary import area_vectors, check_boundary, refine, segments, worn_depth
+from .kernels.boundary import area_vectors, check_boundary, distance, refine, segments, worn_depth
 from .kernels.checks import ParameterError, positive
 from .kernels.worn_boundary import WornBoundary
 
@@ -11,17 +11,18 @@ from .kernels.worn_boundary import WornBoundary
 class FacetTool:
     """A rigid tool whose facets are worn. vertices (n, d) m, facets (m, d), density kg/m3, d = 2 or 3.
 
-    It moves in +x, y is up (and z across, in space). The vertices at its top and at its back are held by the shank and
-    never move, unless `protected` (n,) bool says others.
+    It moves in +x, y is up (and z across, in space). The facets of its top and of its back are held by the shank:
+    they are never worn and stay in their planes, unless `protected` (m,) bool says others.
     """
 
     def __init__(self, *, vertices, facets, density, protected=None):
         vertices, facets = check_boundary(vertices, facets, "tool")
-        self.first = vertices
+        self.first, self.first_facets = vertices, facets
         self.density = positive("tool_density", density, "kg/m3")
         if protected is None:
             slack = 1e-6 * np.ptp(vertices[:, :2], axis=0).max()
-            protected = (vertices[:, 1] > vertices[:, 1].max() - slack) | (vertices[:, 0] < vertices[:, 0].min() + slack)
+            top, back = vertices[:, 1] > vertices[:, 1].max() - slack, vertices[:, 0] < vertices[:, 0].min() + slack
+            protected = top[facets].all(axis=1) | back[facets].all(axis=1)
         self.boundary = WornBoundary(vertices=vertices, facets=facets, protected=protected)
         self.count = len(facets)
 
@@ -39,12 +40,12 @@ class FacetTool:
     @property
     def positions(self):
         """(m, d) m, the middles of the facets as they were made."""
-        return self.first[self.boundary.facets].mean(axis=1)
+        return self.first[self.first_facets].mean(axis=1)
 
     @property
     def areas(self):
         """(m,) m2 of the facets as they were made; in the plane lengths, m."""
-        return np.linalg.norm(area_vectors(self.first, self.boundary.facets), axis=1)
+        return np.linalg.norm(area_vectors(self.first, self.first_facets), axis=1)
 
     @property
     def worn_depth(self):
@@ -52,14 +53,9 @@ class FacetTool:
         return worn_depth(self.first, self.boundary.vertices, self.boundary.facets)
 
     @property
-    def neighbours(self):
-        """[{facets that share a vertex with facet k}] by k."""
-        at = [set() for _ in self.first]
-        for number, facet in enumerate(self.boundary.facets.tolist()):
-            for vertex in facet:
-                at[vertex].add(number)
-        return [set().union(*(at[vertex] for vertex in facet)) - {number}
-                for number, facet in enumerate(self.boundary.facets.tolist())]
+    def depth_below(self):
+        """(n,) m from each vertex as it is now to the surface as it was made."""
+        return distance(self.boundary.vertices, self.first, self.first_facets)
 
     def foremost(self, below):
         """Largest x that vertices have below the height `below` (both m, in the tool's own frame), -inf for none."""

@@ -209,8 +209,9 @@ class FacetWear(WearEngine):
 
     `recession` is the mean over the worn volume of what a facet recedes over the way slid on it, dw/ds of Archard's law.
     Where it is not small, a face recedes from what presses on it: the contact is relieved, and wear is no longer
-    proportional to the acceleration, R's first rule. Raises RunEnded where a facet would recede further in one update
-    than vertices can go, where the boundary would fold, and where a particle has come to the inner side of a facet.
+    proportional to the acceleration, R's first rule. A facet given to another part of the surface by remeshing counts for
+    the place it lies on then. Raises RunEnded where a facet would recede further in one update than vertices can go,
+    where the boundary would fold, and where a particle has come to the inner side of a facet.
     """
 
     def __init__(self, *, contact, boundary, tool, law, hardness, work_fraction=1.0, reshape=True, acceleration=1.0,
@@ -233,22 +234,27 @@ class FacetWear(WearEngine):
             return
         areas = self._areas()
         volume = self.work_fraction * self.law.volume(slid, self.hardness, areas)
-        self.worn += volume
+        self.worn += self.at_places(volume)
         if not self.reshape:
             return
         rubbed = slid[SLIP] > 0
         self.receded += float(np.sum(volume[rubbed]**2 / (areas * slid[SLIP])[rubbed]))
         self._check_speed(volume / areas)
-        stored = self.contact.elastic_energy()
+        stored, remeshed = self.contact.elastic_energy(), self.boundary.remeshed
         try:
             moved = self.boundary.wear(volume)
         except WornAway as end:
             raise RunEnded(f"the tool is worn away at t = {O.time:g} s: {end}", True) from None
         except Folded as end:
-            raise self._too_fast(f"{end}: it is worn through in a thin place, or wears too fast") from None
+            raise RunEnded(f"the tool's shape cannot follow its wear at t = {O.time:g} s: {end}", False) from None
         if moved:
+            if self.boundary.remeshed != remeshed:
+                self.contact.neighbours = self.boundary.neighbours()
             self.tool.reshape()
             self.contact_energy_removed += stored - self.contact.elastic_energy()
+
+    def at_places(self, values):
+        return np.bincount(self.boundary.place, values, len(self.worn))
 
     def _check_speed(self, depth):
         size = altitudes(self.boundary.vertices, self.boundary.facets)
@@ -283,6 +289,7 @@ class FacetWear(WearEngine):
         self.receded = float(state["receded"])
         self.worn = state["worn"].copy()
         self.boundary.restore(state["boundary"])
+        self.contact.neighbours = self.boundary.neighbours()
 
     def log(self):
         return {"mass_lost": (1 - self.boundary.volume / self.boundary.first_volume, "-"),

@@ -197,13 +197,17 @@ class WearEngine(Engine):
     def take_slid(self):
         """What slid since the last visit, its work and the contacts that have begun counted; None without any."""
         slid = self.contact.take_slid()
-        rubbed = slid[WORK] > 0
+        rubbed = self.at_places(slid[WORK]) > 0
         self.events += rubbed & ~self.rubbed
         self.rubbed = rubbed
         if not rubbed.any():
             return None
         self.work_used += float(slid[WORK].sum())
         return slid
+
+    def at_places(self, values):
+        """What `values` (count,) of the pieces are for the pieces as they were made."""
+        return values
 
     def warnings(self):
         """Lines on what in this run's wear is not to be relied on."""

@@ -84,14 +84,15 @@ def check_boundary(vertices, facets, name="boundary"):
             "of one orientation: some facets are flipped or doubled")
     require(not single, name, f"{len(single)} open edges", "closed: it has holes")
     require(volume(vertices, facets) > 0, name, f"{len(facets)} facets", "oriented with its normals outwards")
-    through = crossings(vertices, facets)
+    through = len(crossings(vertices, facets))
     require(through == 0, name, f"{through} crossings", "free of facets that run through each other")
     return vertices, facets
 
 
 def crossings(vertices, facets, moved=None):
-    """How many times facets that have no vertex in common run through each other: in the plane pairs of segments that
-    meet, in space edges that pierce a triangle. moved: (n,) bool, look only (in space) where one of these takes part."""
+    """(k, 4) or (k, 5) the vertices of each place where facets that have no vertex in common run through each other: in
+    the plane pairs of segments that meet, in space an edge that pierces a triangle. moved: (n,) bool, look only (in
+    space) where one of these takes part."""
     if vertices.shape[1] == 2:
         return _meeting(vertices, facets)
     edges = ridges(facets)
@@ -99,7 +100,8 @@ def crossings(vertices, facets, moved=None):
     if moved is None:
         return _piercing(vertices, edges, facets)
     of_edge, of_facet = moved[edges].any(axis=1), moved[facets].any(axis=1)
-    return _piercing(vertices, edges[of_edge], facets) + _piercing(vertices, edges[~of_edge], facets[of_facet])
+    return np.concatenate([_piercing(vertices, edges[of_edge], facets),
+                           _piercing(vertices, edges[~of_edge], facets[of_facet])])
 
 
 def _meeting(vertices, facets):
@@ -118,15 +120,17 @@ def _meeting(vertices, facets):
     det = cross(along[i], along[j])
     with np.errstate(divide="ignore", invalid="ignore"):
         s, t = cross(gap, along[j]) / det, cross(gap, along[i]) / det
-        return int(np.sum((s >= 0) & (s <= 1) & (t >= 0) & (t <= 1)))
+        meet = (s >= 0) & (s <= 1) & (t >= 0) & (t <= 1)
+    return np.column_stack([facets[i], facets[j]])[meet]
 
 
 def _piercing(vertices, edges, facets):
     if not len(edges) or not len(facets):
-        return 0
+        return np.empty((0, 5), int)
     i, j = _near(vertices, edges, facets)
-    apart = (edges[i][:, :, None] != facets[j][:, None, :]).all(axis=(1, 2))
-    (p, q), (a, b, c) = (np.moveaxis(vertices[rows], 1, 0) for rows in (edges[i[apart]], facets[j[apart]]))
+    rows = np.column_stack([edges[i], facets[j]])
+    rows = rows[(rows[:, :2, None] != rows[:, None, 2:]).all(axis=(1, 2))]
+    p, q, a, b, c = np.moveaxis(vertices[rows], 1, 0)
 
     def side(u, v, w, x):
         return np.einsum("ni,ni->n", np.cross(v - u, w - u), x - u)
@@ -136,7 +140,7 @@ def _piercing(vertices, edges, facets):
     above, below = side(a, b, c, p), side(a, b, c, q)
     between = (above * below < 0) & (np.minimum(abs(above), abs(below)) > least)
     around = np.array([side(p, q, a, b), side(p, q, b, c), side(p, q, c, a)])
-    return int(np.sum(between & ((around.min(axis=0) >= -least) | (around.max(axis=0) <= least))))
+    return rows[between & ((around.min(axis=0) >= -least) | (around.max(axis=0) <= least))]
 
 
 def _near(vertices, edges, facets):
@@ -203,12 +207,9 @@ def worn_depth(first, vertices, facets):
     nearest point of the facets as they are now, at `vertices` (n, d).
 
     On a face that is the recession along its normal; at an edge that has become another, the way to the nearest of it. It
-    depends on the two shapes alone: a vertex that only slid along its face has none.
+    depends on the two shapes alone, whatever vertices and facets they are made of.
     """
-    depth = np.zeros(len(first))
-    moved = (np.asarray(vertices) != first).any(axis=1)
-    depth[moved] = distance(first[moved], vertices, facets)
-    return depth
+    return distance(first, vertices, facets)
 
 
 def segments(polygon):

@@ -6,39 +6,35 @@ that takes away exactly a demanded volume is found to round-off.
 """
 import numpy as np
 
-from .boundary import altitudes, area_vectors, check_boundary, crossings, ridges, volume
-from .checks import ParameterError, within
+from .boundary import altitudes, area_vectors, crossings, volume
+from .checks import within
+from .remeshing import EDGE, SHAPE, SHARP, TURN, Mesh
 
 STRIDE = 0.2
 """Longest way of a vertex at once, as a part of the smallest altitude around it."""
 LEAST_STRIDE = 1e-4
-"""Wear waits until some vertex has so far to go, as a part of the same altitude: below it the last digit of the
+"""An update waits until some vertex has so far to go, as a part of the same altitude: below it the last digit of the
 coordinates would spoil the volume."""
-EDGE = 0.13
-"""Two equal facets make an edge where they meet at more than 40 degrees: they look across their mean normal with
-tan^2(20 degrees) of the weight with which they look along it."""
-FLAT = 0.03
-"""The same for the sliding of vertices, which must not round any edge: 20 degrees."""
 DENT = 0.1, 0.2
 """Mean slope from a vertex up to its neighbours: from the first on it hands wear over to them, from the second on all
 of it."""
-CROWDED = 0.5
-"""Vertices slide along the surface where a facet's altitude has fallen to this part of what it was at first."""
-TIGHT = 0.25
-"""From this part on they slide round edges as well: an edge that holds so many vertices is finer than the facets."""
-FOLDED = 0.5
-"""A facet may not turn by more than 60 degrees, cosine 0.5, at once, nor pass below SLIVER."""
 SLIVER = 1e-3
 """Smallest altitude of a facet, as a part of what it was at first."""
+ATTEMPTS = 8
+"""So often a step is tried, with vertices held back wherever it would fold."""
 LEAST_PART = 0.02
 """Least part of what is due that is done in one step, where strides allow it."""
 STEPS = 200
 """So many steps of at most a STRIDE in one update; what is still not done waits for the next."""
-
-
-SHARP = -0.9
-"""Two neighbouring facets do not come nearer to lying back to back than this cosine between their normals, 154 degrees,
-unless they were made so."""
+ALONG = 0.03
+"""A vertex on the rim of the protected part gives way only where the worn facets look along the protected ones with
+more than cos^2(80 degrees) of their weight."""
+ASTRAY = 0.02
+"""A vertex that would win less than this part of its way goes back along its mean normal instead."""
+BOOKS = "kept", "archard_volume", "removed", "broken_off"
+FAR = {2: 6, 3: 3}
+"""Facets that run through each other this many facets apart along the surface are two faces: the body is worn through.
+Nearer ones are the flanks of one edge."""
 
 
 class WornAway(Exception):
@@ -49,66 +45,35 @@ class Folded(Exception):
     """Much is left, but the vertices can move no further without a fold: str() is one line."""
 
 
-class WornBoundary:
-    """A closed boundary whose facets are worn; its topology stays, its vertices move inwards.
+class WornBoundary(Mesh):
+    """A closed boundary whose facets are worn: its vertices move inwards.
 
-    vertices: (n, d) m; facets: (m, d), normals outwards; protected: (n,) bool, vertices that never move (a shank);
-    gone: the part of the volume that can be worn at which the body counts as worn away.
+    vertices, facets, protected: as for Mesh, the protected part being held (a shank); gone: the part of the volume at
+    which the body counts as worn away.
+
+    A protected facet is never worn and keeps its plane (its line). It gets shorter as the worn surface beside it
+    retreats: a vertex of worn and protected facets slides along the protected ones, to the corner where they end.
 
     A vertex moves so that each facet around it recedes by its own depth, volume over area, as nearly as one motion
     can (least squares over the facets, weighted by area): an edge between a worn and a sound face slides down the
-    sound one, which keeps its plane. The facet's volume is shared equally by those of its vertices that are free.
-    Where vertices crowd, they slide along flat faces and straight edges, which changes no volume.
+    sound one, which keeps its plane. The facet's volume is shared equally by those of its vertices that can go.
+    Facets that crowd are given to where they are missed, without any change of the volume (kernels.remeshing).
 
-    A step that would fold a facet, or make two run through each other where a part has become thin, is not taken.
+    Where a step would fold a facet, or make two run through each other near an edge, the vertices in question stay
+    behind, and the facets around take over their wear. A feather edge breaks off, which is no wear: `broken_off` m3.
 
-    `pending` holds, by facet, what has not been done yet; `kept` what fell on facets that are protected altogether.
-    Raises ParameterError for a boundary that is open, folded, or not oriented outwards, or with no free vertex.
+    An update that moves vertices takes all that is due, to round-off, in STEPS strides at most. Below LEAST_STRIDE
+    nothing moves, and a later update makes up for it: what waits by then is less than LEAST_STRIDE times the area of
+    the worn facets times the largest of their altitudes. `pending` holds it by facet; `kept` is what fell on protected
+    facets. `remeshed` counts the updates that changed which facets there are.
     """
 
-    def __init__(self, *, vertices, facets, protected=None, gone=0.02):
-        self.vertices, self.facets = check_boundary(vertices, facets)
-        n, d = self.vertices.shape
-        self.dimension = d
-        self.protected = np.zeros(n, bool) if protected is None else np.array(protected, bool)
-        if self.protected.shape != (n,) or self.protected.all():
-            raise ParameterError("protected", f"{int(self.protected.sum())} of {n} vertices",
-                                 "a flag for each vertex that leaves at least one free")
-        free = ~self.protected[self.facets]
-        self.free_count = free.sum(axis=1)
-        self.share = np.where(free, 1 / np.maximum(self.free_count, 1)[:, None], 0.0)
-        self.first_altitude = altitudes(self.vertices, self.facets)
-        self.first_room = self._room()
+    def __init__(self, *, gone=0.02, **shape):
+        super().__init__(**shape)
         self.first_volume = volume(self.vertices, self.facets)
         self.least_volume = within("gone", gone, 0, 1) * self.first_volume
-        self.pending = np.zeros(len(self.facets))
-        self.archard_volume = self.removed = self.kept = 0.0
-        self._classes = self._colour()
-        self._around = self._rings()
-        self._joined = self._neighbours()
-
-    def _neighbours(self):
-        """(k, 2) facets that share an edge (in the plane: an end)."""
-        owner = np.tile(np.arange(len(self.facets)), self.dimension)
-        rows = np.sort(ridges(self.facets), axis=1) if self.dimension == 3 else np.abs(ridges(self.facets) + 0.5)
-        order = np.lexsort(rows.T)
-        return owner[order].reshape(-1, 2)
-
-    def _rings(self):
-        """Pairs (j, k) of vertices of a common facet, both ways."""
-        pairs = [self.facets[:, [a, b]] for a in range(self.dimension) for b in range(self.dimension) if a != b]
-        return np.unique(np.concatenate(pairs), axis=0)
-
-    def _colour(self):
-        """Sets of free vertices no two of which share a facet."""
-        colour = np.full(len(self.vertices), -1)
-        rings = {}
-        for j, k in self._rings().tolist():
-            rings.setdefault(j, []).append(k)
-        for j in np.flatnonzero(~self.protected).tolist():
-            taken = set(colour[rings[j]].tolist())
-            colour[j] = next(c for c in range(len(taken) + 1) if c not in taken)
-        return [np.flatnonzero(colour == c) for c in range(colour.max() + 1)]
+        self.archard_volume = self.removed = self.kept = self.broken_off = 0.0
+        self.remeshed = 0
 
     # ---- wear
 
@@ -120,9 +85,8 @@ class WornBoundary:
         """
         demanded = np.asarray(demanded, float)
         self.archard_volume += float(demanded.sum())
-        bare = self.free_count == 0
-        self.kept += float(demanded[bare].sum())
-        self.pending += np.where(bare, 0.0, demanded)
+        self.kept += float(demanded[self.protected].sum())
+        self.pending += np.where(self.protected, 0.0, demanded)
         total = float(self.pending.sum())
         if total <= 0:
             return False
@@ -133,73 +97,86 @@ class WornBoundary:
         motion, weights, reach = self._motion()
         if reach.max() < LEAST_STRIDE:
             return False
-        stuck = 0
+        stuck = hindrances = 0
         for _ in range(STEPS):
-            if self._step(motion, weights, reach):
-                self._slide()
-            else:
-                stuck += 1
-                if stuck > 10:
-                    part = self.volume / self.first_volume
-                    raise (WornAway if part < 0.5 else Folded)(
-                        f"its surface can recede no further without a fold, with {100 * part:.3g} % of the volume left")
-                self._spread()
-            if self.pending.sum() <= 0:
-                return True
+            self._held_up = np.zeros(len(self.vertices), bool)
+            stuck = 0 if self._step(motion, weights, reach) else stuck + 1
+            if stuck > 10:
+                part = self.volume / self.first_volume
+                raise (WornAway if part < 0.5 else Folded)(
+                    f"its surface can recede no further without a fold, with {100 * part:.3g} % of the volume left: some "
+                    "part is thinner than its facets; take facets of another size, or wear it less than that")
+            if self._held_up.any():
+                hindrances += 1
+                self._spread(2**min(hindrances, 8))
+            if self.pending.sum() <= 1e-11 * total:
+                break
+            self._mend()
             motion, weights, reach = self._motion()
-            if reach.max() < LEAST_STRIDE:
-                return True
-        self._spread()
+        # Last, so that the next demands, made for the facets as they lie then, find them there.
+        self._mend()
         return True
+
+    def _mend(self):
+        self.remeshed += self.even_out()
+        self.broken_off += self.blunt()
 
     def _motion(self):
         """For all that is pending: motion (n, d) m, volume (n,) m3 by vertex, and its reach (n,) over the altitude."""
         areas, corners = area_vectors(self.vertices, self.facets), self.facets.ravel()
         n, d = self.vertices.shape
+        self.share = self._shares(areas)
         share = self.share * self.pending[:, None]
         size = np.linalg.norm(areas, axis=1)
         normals = areas / size[:, None]
-        gradient = self._sum(np.repeat(areas / d, d, axis=0), corners)
+        gradient = self.sum_at_vertices(np.repeat(areas / d, d, axis=0))
         own = np.bincount(corners, share.ravel(), n)
-        values, frames = np.linalg.eigh(self._looks(normals, size))
-        due = self._sum((d * share[:, :, None] * normals[:, None, :]).reshape(-1, d), corners)
+        values, frames = np.linalg.eigh(self.ways @ self.looks(normals, size) @ self.ways)
+        due = self.sum_at_vertices((d * share[:, :, None] * normals[:, None, :]).reshape(-1, d))
         along = np.einsum("nij,ni->nj", frames, due)
-        seen = values > EDGE * values[:, -1:]
+        seen = values > np.maximum(EDGE * values[:, -1:], 1e-12 * size.max())
         motion = -np.einsum("nij,nj->ni", frames, np.where(seen, along / np.where(seen, values, 1.0), 0.0))
         gain = -np.einsum("ni,ni->n", gradient, motion)
+        straight = np.einsum("nij,nj->ni", self.ways, gradient)
         # A ring of facets too crooked for that recedes along its mean normal.
         sound = (gain > 0.25 * own) & (gain < 4 * own)
+        motion = np.where(sound[:, None], motion, -straight)
         weights = self._over_dents(own, gradient)
-        motion = np.where(sound[:, None], motion * (weights / np.where(sound, gain, 1.0))[:, None],
-                          -gradient * (weights / np.einsum("ni,ni->n", gradient, gradient))[:, None])
+        # Across the surface nothing is won; what a vertex cannot take on any way stays pending.
+        way, straight = _directions(motion), _directions(-straight)
+        least = ASTRAY * np.linalg.norm(gradient, axis=1)
+        way = np.where((-np.einsum("ni,ni->n", gradient, way) > least)[:, None], way, straight)
+        gain = -np.einsum("ni,ni->n", gradient, way)
+        weights = np.where(gain > least, weights, 0.0)
+        motion = way * (weights / np.where(gain > least, gain, 1.0))[:, None]
         return motion, weights, np.linalg.norm(motion, axis=1) / self._room()
+
+    def _shares(self, areas):
+        """(m, d) of each facet's volume by its vertices: equal ones, but for vertices that what is protected holds."""
+        d = self.dimension
+        worn = self.sum_at_vertices(np.repeat(areas * ~self.protected[:, None], d, axis=0))
+        way = np.einsum("nij,nj->ni", self.ways, worn)
+        gives = np.einsum("ni,ni->n", way, way) > ALONG * np.einsum("ni,ni->n", worn, worn)
+        taking = gives[self.facets] & ~self.protected[:, None]
+        return taking / np.maximum(taking.sum(axis=1), 1)[:, None]
 
     def _over_dents(self, weights, gradient):
         """The volumes by vertex, those of dents handed to the vertices around: what wears does not reach into a dent
         finer than the facets, it rides on the rim."""
-        j, k = self._around.T
+        j, k = self.around.T
         n = len(self.vertices)
         apart = self.vertices[k] - self.vertices[j]
         outward = gradient / np.linalg.norm(gradient, axis=1)[:, None]
         slope = np.einsum("ni,ni->n", apart, outward[j]) / np.linalg.norm(apart, axis=1)
         depth = np.bincount(j, slope, n) / np.bincount(j, minlength=n)
         handed = np.clip((depth - DENT[0]) / (DENT[1] - DENT[0]), 0.0, 1.0)
-        rim = ~self.protected[k] & (handed[k] < handed[j])
+        rim = (weights[k] > 0) & (handed[k] < handed[j])
         rims = np.bincount(j[rim], minlength=n)
         handed[rims == 0] = 0.0
         for _ in range(3):
             given = weights * handed
             weights = weights - given + np.bincount(k[rim], (given / np.maximum(rims, 1))[j[rim]], n)
         return weights
-
-    def _looks(self, normals, size):
-        """(n, d, d) sum of area n n^T over the facets at each vertex: where its facets look."""
-        n, d = self.vertices.shape
-        looks = np.repeat((size[:, None, None] * normals[:, :, None] * normals[:, None, :]).reshape(-1, d * d), d, axis=0)
-        return self._sum(looks, self.facets.ravel()).reshape(n, d, d)
-
-    def _sum(self, rows, corners):
-        return np.column_stack([np.bincount(corners, column, len(self.vertices)) for column in rows.T])
 
     def _room(self):
         """(n,) m, the smallest altitude around each vertex."""
@@ -214,21 +191,32 @@ class WornBoundary:
         # All vertices go on together, so that the shape between them stays, unless a few would hold up all others.
         together = max(STRIDE / max(reach.max(), STRIDE), LEAST_PART)
         part = np.minimum(together, STRIDE / np.maximum(reach, STRIDE))
-        for attempt in range(4):
+        for attempt in range(ATTEMPTS):
             wanted = float(weights @ part)
+            if wanted <= 0:
+                return False
             moved = motion * part[:, None]
             fresh = self.vertices + moved * self._length(moved, wanted)
-            if self._holds(fresh) and not crossings(fresh, self.facets, (moved != 0).any(axis=1)):
+            through = crossings(fresh, self.facets, (moved != 0).any(axis=1))
+            hindered = self._folded(fresh)
+            hindered[through] = True
+            if not hindered.any():
                 break
-            part = 0.5 * part
+            if attempt >= 2:
+                self._check_through(through)
+            # First a shorter way, then none.
+            part = np.where(hindered, 0.5 * part if attempt < 2 else 0.0, part)
+            self._held_up |= hindered & (part == 0)
         else:
             return False
         taken = -self._change(fresh - self.vertices)
         self.vertices = fresh
         total = float(self.pending.sum())
         undone = self.pending * (self.share * (1 - part[self.facets])).sum(axis=1)
-        rest = float(undone.sum())
-        self.pending = undone * ((total - wanted) / rest) if rest > 0 else undone
+        if undone.sum() <= 1e-9 * total:
+            # What lags is wear that dents have handed on: it stays with the facets it came from.
+            undone = self.pending
+        self.pending = undone * ((total - wanted) / undone.sum())
         self._book(taken, wanted)
         return True
 
@@ -267,61 +255,44 @@ class WornBoundary:
     def _change(self, motion):
         return float(self._terms(motion).sum())
 
-    def _holds(self, fresh):
-        """Whether no facet turns far or collapses on the way to `fresh`."""
+    def _check_through(self, through):
+        """Raise Folded if of `through`, vertices of facets that run through each other, any are of two faces."""
+        d = self.dimension
+        j, k = self.around.T
+        for row in through:
+            near = np.zeros(len(self.vertices), bool)
+            near[row[:-d]] = True
+            for _ in range(FAR[d]):
+                near[j[near[k]]] = True
+            if not near[row[-d:]].any():
+                place = ", ".join(f"{x:.4g}" for x in self.vertices[row].mean(axis=0))
+                raise Folded(f"it is worn through at ({place}) m of its own frame, with "
+                             f"{100 * self.volume / self.first_volume:.3g} % of the volume left")
+
+    def _folded(self, fresh):
+        """(n,) vertices of the facets that on the way to `fresh` turn far or collapse, or go through their neighbour or
+        close on it in a notch."""
         before, after = area_vectors(self.vertices, self.facets), area_vectors(fresh, self.facets)
         cosine = np.einsum("ni,ni->n", before, after)
-        cosine = cosine - FOLDED * np.linalg.norm(before, axis=1) * np.linalg.norm(after, axis=1)
-        folds, were = _bend(after, self._joined), _bend(before, self._joined)
-        return bool(np.all(cosine > 0) and np.all((folds > SHARP) | (folds >= were))
-                    and np.all(altitudes(fresh, self.facets) >= SLIVER * self.first_altitude))
+        cosine = cosine - TURN * np.linalg.norm(before, axis=1) * np.linalg.norm(after, axis=1)
+        height, was = altitudes(fresh, self.facets), altitudes(self.vertices, self.facets)
+        folded = np.zeros(len(fresh), bool)
+        folded[self.facets[(cosine <= 0) | ((height < SLIVER * self.size) & (height < was))]] = True
+        was_bent, bent = self.bends(before), self.bends(after)
+        slope = self.slope(fresh, after)
+        through = (bent < 0) & (self.slope(self.vertices, before) * slope <= 0)
+        folded[self.facets[self.joined[through | (bent < SHARP) & (bent < was_bent) & (slope > 0)]]] = True
+        return folded
 
-    def _spread(self):
-        """Hand half of what could not be done to the facets around."""
-        at_vertex = np.bincount(self.facets.ravel(), (self.share * self.pending[:, None]).ravel(), len(self.vertices))
-        facets_at = np.bincount(self.facets.ravel(), (self.free_count > 0).repeat(self.dimension), len(self.vertices))
-        given = np.where(self.free_count > 0, (at_vertex / np.maximum(facets_at, 1))[self.facets].sum(axis=1), 0.0)
-        self.pending = 0.5 * (self.pending + given)
-
-    # ---- the spacing of vertices
-
-    def _slide(self):
-        """Even out the spacing where vertices crowd, class by class: no two of a class share a facet, and each moves
-        across its own N_j, so that the volume stays."""
-        crowded = altitudes(self.vertices, self.facets) < CROWDED * self.first_altitude
-        if not crowded.any():
-            return
-        near = np.zeros(len(self.vertices), bool)
-        near[self.facets[crowded]] = True
-        near[self._around[near[self._around[:, 0]], 1]] = True
-        near &= ~self.protected
-        for one_class in self._classes:
-            mine = one_class[near[one_class]]
-            if len(mine):
-                self._slide_class(mine)
-
-    def _slide_class(self, mine):
-        n = len(self.vertices)
-        areas = area_vectors(self.vertices, self.facets)
-        size = np.linalg.norm(areas, axis=1)
-        values, frames = np.linalg.eigh(self._looks(areas / size[:, None], size)[mine])
-        j, k = self._around.T
-        mean = self._sum(self.vertices[k], j)[mine] / np.bincount(j, minlength=n)[mine, None]
-        along = np.einsum("nij,ni->nj", frames, mean - self.vertices[mine])
-        room = self._room()[mine]
-        tight = room < TIGHT * self.first_room[mine]
-        away = 0.5 * np.einsum("nij,nj->ni", frames, np.where((values < FLAT * values[:, -1:]) | tight[:, None], along, 0.0))
-        gradient = self._sum(np.repeat(areas, self.dimension, axis=0), self.facets.ravel())[mine]
-        gradient /= np.linalg.norm(gradient, axis=1)[:, None]
-        away -= np.einsum("ni,ni->n", away, gradient)[:, None] * gradient
-        length = np.linalg.norm(away, axis=1)
-        away *= np.minimum(1.0, STRIDE * room / np.maximum(length, STRIDE * room))[:, None]
-        fresh = self.vertices.copy()
-        fresh[mine] += away
-        if self._holds(fresh):
-            taken = -self._change(fresh - self.vertices)
-            self.vertices = fresh
-            self._book(taken, 0.0)
+    def _spread(self, times):
+        """Hand on what facets that would fold could not do: half of it to the facets around, and so on, `times`."""
+        giving = self._held_up[self.facets].any(axis=1) & ~self.protected
+        corners, n = self.facets.ravel(), len(self.vertices)
+        facets_at = np.maximum(np.bincount(corners, (~self.protected).repeat(self.dimension), n), 1)
+        for _ in range(times):
+            given = 0.5 * self.pending * giving
+            at_vertex = np.bincount(corners, (self.share * given[:, None]).ravel(), n) / facets_at
+            self.pending += np.where(self.protected, 0.0, at_vertex[self.facets].sum(axis=1)) - given
 
     # ---- books
 
@@ -332,30 +303,29 @@ class WornBoundary:
 
     def volume_balance(self):
         """The volume book in m3: what Archard's law wore, what the motion of vertices has taken, what waits, what fell
-        on protected facets; unexplained is what the shape itself contradicts."""
+        on protected facets; what broke off beside that; unexplained is what the volume enclosed now has lost else."""
         waiting = float(self.pending.sum())
         return {"archard": self.archard_volume, "removed": self.removed, "waiting": waiting,
-                "on_protected_facets": self.kept,
-                "unexplained": self.removed + waiting + self.kept - self.archard_volume,
-                "shape": self.first_volume - self.volume - self.removed}
-
-    def depth(self, first):
-        """(n,) m by which the vertices have come from `first` (n, d), their places of the beginning."""
-        return np.linalg.norm(self.vertices - first, axis=1)
+                "on_protected_facets": self.kept, "broken_off": self.broken_off,
+                "unexplained": self.first_volume - self.volume - self.broken_off + waiting + self.kept
+                - self.archard_volume}
 
     def state(self):
         """What must survive a restart."""
-        return {"vertices": self.vertices.copy(), "pending": self.pending.copy(), "kept": self.kept,
-                "archard_volume": self.archard_volume, "removed": self.removed}
+        return {**{name: getattr(self, name).copy() for name in SHAPE},
+                **{name: getattr(self, name) for name in (*BOOKS, "remeshed")}}
 
     def restore(self, state):
         """Take back what `state` gave."""
-        self.vertices, self.pending = state["vertices"].copy(), state["pending"].copy()
-        for name in ("kept", "archard_volume", "removed"):
+        for name in SHAPE:
+            setattr(self, name, state[name].copy())
+        for name in BOOKS:
             setattr(self, name, float(state[name]))
+        self.remeshed = int(state["remeshed"])
+        self._connect()
 
 
-def _bend(areas, pairs):
-    """Cosine between the normals of the pairs of facets."""
-    normals = areas / np.linalg.norm(areas, axis=1)[:, None]
-    return np.einsum("ni,ni->n", normals[pairs[:, 0]], normals[pairs[:, 1]])
+def _directions(vectors):
+    """(n, d) of length 1, or 0 where the vectors are none."""
+    size = np.linalg.norm(vectors, axis=1)
+    return vectors / np.where(size > 0, size, 1.0)[:, None]

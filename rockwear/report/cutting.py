@@ -126,7 +126,7 @@ def moved_tool(run, shot):
 def tool_outlines(run, shot):
     """Polygons (m, in the tool's own frame) of what is left of the tool, worn depth taken off."""
     if "tool_facets" in run.model:
-        return [shot["tool_vertices"][shapes.loop(run.model["tool_facets"])]]
+        return [shot["tool_vertices"][shapes.loop(shot["tool_facets"])]]
     model, alive = run.model, shot["alive"]
     return shapes.outlines(model["tool_positions"][alive], model["tool_radii"][alive], shot["worn_depth"][alive])
 

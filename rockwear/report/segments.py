@@ -2,6 +2,7 @@
 import numpy as np
 from matplotlib import colormaps
 
+from ..kernels.boundary import worn_depth
 from ..kernels.outline import contour, nearest_arc
 from . import shapes
 from .cutting import CRACK, cut, draw_cracks, draw_energy, draw_forces, moving_picture, summary_line, trusted, worn_stages
@@ -69,7 +70,7 @@ def along(run):
 def wear(run):
     """Depth worn off along the outline at several stages, and on the tool."""
     middle, length, normal, arc = along(run)
-    free = ~run.model["tool_protected"][run.model["tool_facets"]].all(axis=1)
+    free = ~run.model["tool_protected"]
     order = np.argsort(arc)
     order = order[free[order]]
     shown = worn_stages(run, 8)
@@ -96,18 +97,25 @@ def wear(run):
     return figure
 
 
+def closed(vertices, facets):
+    """(m + 1, 2) m, the outline that segments make, its first corner again at its end."""
+    loop = shapes.loop(facets)
+    return vertices[np.append(loop, loop[0])]
+
+
 def shape(run):
     """Outlines at the end of each stage: the whole tool, and where it is worn."""
     facets, first = run.model["tool_facets"], run.model["tool_vertices"]
-    loop = np.append(shapes.loop(facets), shapes.loop(facets)[0])
     shown = worn_stages(run, 8)
     figure, panels = canvas(12, 6, 1, 2)
-    moved = np.linalg.norm(run.snapshot(-1)["tool_vertices"] - first, axis=1)
+    last = run.snapshot(-1)
+    moved = worn_depth(first, last["tool_vertices"], last["tool_facets"])
     near = MM * first[moved > 0.02 * moved.max()] if moved.any() else MM * first[[first[:, 1].argmin()]]
     for axes in panels:
-        axes.plot(*MM * first[loop].T, color="black", linewidth=1, linestyle="--")
+        axes.plot(*MM * closed(first, facets).T, color="black", linewidth=1, linestyle="--")
         for (label, k), colour in zip(shown.items(), colormaps["plasma"](np.linspace(0, 0.85, len(shown)))):
-            axes.plot(*MM * run.snapshot(k)["tool_vertices"][loop].T, ".-", color=colour, linewidth=1.2, markersize=3,
+            shot = run.snapshot(k)
+            axes.plot(*MM * closed(shot["tool_vertices"], shot["tool_facets"]).T, ".-", color=colour, linewidth=1.2, markersize=3,
                       label=label)
     (left, low), (right, top) = MM * first.min(axis=0), MM * first.max(axis=0)
     frame(panels[0], (left - 2, right + 2, low - 2, top + 2), "outline")

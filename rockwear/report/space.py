@@ -9,7 +9,7 @@ from matplotlib.colors import LinearSegmentedColormap, Normalize, to_rgb
 from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
-from ..kernels.boundary import area_vectors, worn_depth
+from ..kernels.boundary import area_vectors, distance, worn_depth
 from . import shapes
 from .cutting import CRACK, DAMAGE, LOOSE, PALE, STEEL, SUPPORT, trusted
 from .page import Section, machine_tiles, number, percent, quantity, tiles
@@ -179,7 +179,7 @@ def tooth_parts(run, shot, view, nearer=np.inf):
     """Polygons of the tooth where it is, its particles or triangles no nearer to the eye than z = `nearer`."""
     place = np.array([*shot["tool_offset"], 0.0])
     if not has_particles(run):
-        return facet_polygons(shot["tool_vertices"] + place, run.model["tool_facets"], view)
+        return facet_polygons(shot["tool_vertices"] + place, shot["tool_facets"], view)
     shown = np.zeros(len(run.model["tool_radii"]), bool)
     shown[shot["skin"]] = True
     shown |= run.model["tool_mounted"] & shot["alive"]
@@ -327,11 +327,11 @@ def wear(run):
 
 
 def facet_depth(run, shot):
-    """(m,) m worn off the triangles: how far the surface has gone back from their first corners, in the mean; of a shape that
-    is kept, the volume over the area."""
+    """(m,) m worn off the triangles: how far their corners lie below the first surface, in the mean; of a shape that is
+    kept, the volume over the area."""
     first, facets = run.model["tool_vertices"], run.model["tool_facets"]
     if made_of(run) == "triangles":
-        return worn_depth(first, shot["tool_vertices"], facets)[facets].mean(axis=1)
+        return distance(shot["tool_vertices"], first, facets)[shot["tool_facets"]].mean(axis=1)
     return shot["worn_volume"] / np.linalg.norm(area_vectors(first, facets), axis=1)
 
 
@@ -339,8 +339,8 @@ def worn_triangles(run):
     """The tooth of triangles at the end, coloured by its worn depth, and what has become of its outline."""
     if has_particles(run) or not run.result("maximum_wear_depth") > 0:
         return None
-    shot, facets = run.snapshot(-1), run.model["tool_facets"]
-    depth = MM * facet_depth(run, shot)
+    shot = run.snapshot(-1)
+    facets, depth = shot["tool_facets"], MM * facet_depth(run, shot)
     norm = Normalize(0, MM * run.result("maximum_wear_depth"))
     rows = 2 if made_of(run) == "triangles" else 1
     figure = Figure(figsize=(12, 4.6 * rows), layout="constrained")
@@ -379,9 +379,11 @@ def sections_of_tool(run, panels):
         axes.add_collection(LineCollection(MM * shapes.section(first, facets, middle), color="black", linestyle="--",
                                            linewidth=1, zorder=5, label="new"))
         for k, colour in zip(numbers[1:], colormaps["plasma"](np.linspace(0.1, 0.85, len(numbers) - 1))):
-            lines = MM * shapes.section(run.snapshot(k)["tool_vertices"], facets, middle)
+            shot = run.snapshot(k)
+            lines = MM * shapes.section(shot["tool_vertices"], shot["tool_facets"], middle)
             axes.add_collection(LineCollection(lines, color=colour, linewidth=1.6, label=f"t = {number(run.times[k])} s"))
-    depth = worn_depth(first, run.snapshot(-1)["tool_vertices"], facets)
+    last = run.snapshot(-1)
+    depth = worn_depth(first, last["tool_vertices"], last["tool_facets"])
     near = MM * first[depth > 0.1 * depth.max()]
     for axes, points, title in zip(panels, (MM * first, near), ("section in the middle plane", "where it is worn")):
         (left, low), (right, high) = points[:, :2].min(axis=0), points[:, :2].max(axis=0)

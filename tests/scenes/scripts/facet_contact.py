@@ -49,7 +49,7 @@ bodies = scene.FacetBodies(tool, Straight(start=(-0.006 if in_space else -0.0123
 count = len(places)
 motion = Foresight(masses=np.full(count, mass), inertias=np.ones(count), radii=np.full(count, RADIUS),
                    held=np.zeros(count, bool))
-contact = FacetContact(tool=bodies, motion=motion, neighbours=tool.neighbours)
+contact = FacetContact(tool=bodies, motion=motion, neighbours=tool.boundary.neighbours())
 wear = FacetWear(contact=contact, boundary=tool.boundary, tool=bodies, law=DissipationArchard(k=K if in_space else 0.0, mu=MU),
                  hardness=Hardness.constant(HARDNESS)(293.0))
 bodies.add(range(tool.count))
