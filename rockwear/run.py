@@ -48,7 +48,7 @@ def main(name, declared, make_scene):
     began = time.time()
     try:
         values = parameters.read(declared, sys.argv[1:])
-        folder, identity = _folder(name, values), _identity(name, values, declared)
+        folder, identity = _folder(name, values, declared), _identity(name, values, declared)
         if values["resume"]:
             checkpoint.load(folder / "checkpoint", identity)
         scene = make_scene(values)
@@ -67,15 +67,20 @@ def _leave(code):
     os._exit(code)
 
 
+def _files(values, declared):
+    """{parameter: Path} of the files that are read."""
+    files = {p.name: Path(values[p.name]) for p in declared if p.rule is parameters.file and values[p.name]}
+    return {name: path for name, path in files.items() if path.is_file()}
+
+
 def _identity(name, values, declared):
     """What a run must share with the checkpoint that it goes on from: the contents of its files too."""
-    files = [p.name for p in declared if p.rule is parameters.file and values[p.name]]
     return {"scene": name, "yade": yade.config.version, "rockwear": __version__,
             "parameters": {k: v for k, v in values.items() if k not in NOT_IDENTITY},
-            "files": {name: checkpoint.digest(Path(values[name])) for name in files if Path(values[name]).is_file()}}
+            "files": {name: checkpoint.digest(path) for name, path in _files(values, declared).items()}}
 
 
-def _folder(name, values):
+def _folder(name, values, declared):
     row = parameters.batch_row()
     folder = Path(values["out"] or Path("out") / name)
     if row is not None:
@@ -89,6 +94,9 @@ def _folder(name, values):
         raise ParameterError("out", str(folder), f"a folder that can be written ({error.strerror})") from None
     if not writable:
         raise ParameterError("out", str(folder), "a folder that can be written")
+    inside = {key: path for key, path in _files(values, declared).items() if folder.resolve() in path.resolve().parents}
+    for key, path in inside.items():
+        raise ParameterError(key, str(path), f"outside of {folder}, where this run replaces what is there")
     # A run replaces an earlier one in its folder, but nothing that is not a run's.
     foreign = [old for old in (*OURS, "report.html") if (folder / old).exists()]
     if foreign and not (folder / "model.npz").exists():

@@ -104,6 +104,14 @@ def test_a_run_replaces_nothing_that_is_not_a_runs(tmp_path):
     assert thesis.read_bytes() == b"mine"
 
 
+def test_a_run_does_not_read_from_the_folder_that_it_replaces(tmp_path):
+    file = tmp_path / "out/tooth.csv"
+    file.parent.mkdir()
+    file.write_text("0,0\n0,0.03\n-0.02,0.03\n-0.02,0.005\n", encoding="utf-8")
+    one_line(run_script(SCRIPT, *arguments({**SMALL, "out": tmp_path / "out", "outline": file})), "must be outside of")
+    assert file.exists() and os.listdir(file.parent) == ["tooth.csv"]
+
+
 def test_a_checkpoint_belongs_to_the_contents_of_its_files(tmp_path):
     file, out = tmp_path / "tooth.csv", tmp_path / "out"
     values = {**SMALL, "start_up": 1e-4, "cycles": 0, "heat": "false", "report": "false", "outline": file, "out": out}
