@@ -521,7 +521,7 @@ class Cutting(scene.Scene):
         audit["contact_dashpots"] = self.contact.dashpot_dissipated
         audit["bond_breaking"] = self.bonds.energy_released
         audit["background_damping"] = self.damping.dissipated if self.damping else 0.0
-        audit["removed_contacts"] = self.wear.contact_energy_removed
+        audit["removed_contacts"] = self.wear.contact_energy_removed - self.contact.born
         if self.expansion:
             audit["thermal_expansion"] = -self.expansion.work
         audit["residual"] = audit["tool_work"] - math.fsum(list(audit.values())[1:])

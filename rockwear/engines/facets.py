@@ -32,6 +32,9 @@ class FacetContact(ToolContact):
     facet, the contact there takes over the shear force, turned to the new normal, so that neither the history nor the
     energy of the sliding contact is lost. Two facets of an inner corner are both touched inside, and both count.
 
+    Where facets are given elsewhere, the particles there touch others in the next step that they lie in already.
+    `born` is the energy with which such contacts begin, J: no work has been done for it.
+
     YADE's account of friction is one for rock and tool here: `in_account` is the tool's part of it, slip times the force
     after it. Every step is to be sampled.
     """
@@ -39,7 +42,8 @@ class FacetContact(ToolContact):
     def __init__(self, *, neighbours, needs=(WORK,), **common):
         super().__init__(needs=(*needs, SLIP), **common)
         self.neighbours = neighbours
-        self.in_account = 0.0
+        self.in_account = self.born = 0.0
+        self.standing = None
 
     def connect(self):
         super().connect()
@@ -59,7 +63,21 @@ class FacetContact(ToolContact):
         self._sample_all()
         for old, new in successions:
             self._hand_over(old, new)
+        if self.standing is not None:
+            self._note_births({id(new) for _, new in successions})
         self._note_springs()
+
+    def expect_births(self):
+        """Contacts that do not stand now and count in the next step are born then."""
+        self.standing = {contact[1:3] for contact in self.possible if contact[0].isReal and not muted(contact)}
+
+    def _note_births(self, handed_over):
+        for contact in self.possible:
+            interaction = contact[0]
+            if (interaction.isReal and not muted(contact) and contact[1:3] not in self.standing
+                    and id(contact) not in handed_over):
+                self.born += 0.5 * interaction.phys.kn * max(interaction.geom.penetrationDepth, 0.0)**2
+        self.standing = None
 
     def _book(self, contact, before, after, slip):
         if not muted(contact):
@@ -161,11 +179,13 @@ class FacetContact(ToolContact):
         return contact_energy((i for body in self.tool.ids for i in O.interactions.withBody(body)), self.tool.overlap)
 
     def state(self):
-        return {**super().state(), "in_account": self.in_account}
+        return {**super().state(), "in_account": self.in_account, "born": self.born, "expecting": self.standing is not None,
+                "standing": np.array(sorted(self.standing or ()), int).reshape(-1, 2)}
 
     def restore(self, state):
         super().restore(state)
-        self.in_account = float(state["in_account"])
+        self.in_account, self.born = float(state["in_account"]), float(state["born"])
+        self.standing = set(map(tuple, state["standing"].tolist())) if state["expecting"] else None
 
 
 def muted(contact):
@@ -250,6 +270,7 @@ class FacetWear(WearEngine):
         if moved:
             if self.boundary.remeshed != remeshed:
                 self.contact.neighbours = self.boundary.neighbours()
+                self.contact.expect_births()
             self.tool.reshape()
             self.contact_energy_removed += stored - self.contact.elastic_energy()
 

@@ -24,6 +24,8 @@ class ToolContact(Engine):
     """
 
     name = "tool_contact"
+    born = 0.0
+    """J with which contacts have begun that no work was done for."""
 
     def __init__(self, *, tool, motion, needs=(WORK,), period=1):
         super().__init__()
