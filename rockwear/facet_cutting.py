@@ -107,7 +107,8 @@ class FacetCutting(Cutting):
     def _worn_results(self):
         # Where the shape is kept, what each facet would have gone back.
         depth = self.tool.worn_depth if self.v.reshape else self.wear.worn / self.tool.areas
-        found = {**self.wear.log(), "broken_off": (self.tool.boundary.broken_off, self.volume_unit), "facets": (self.tool.count, "-"), "maximum_wear_depth": (float(depth.max()), "m")}
+        found = {**self.wear.log(), "broken_off": (self.tool.boundary.broken_off, self.volume_unit),
+                 "facets": (self.tool.count, "-"), "maximum_wear_depth": (float(depth.max()), "m")}
         return {**found, "recession_per_slip": (self.wear.recession, "-")} if self.v.reshape else found
 
     def warnings(self):

@@ -94,9 +94,9 @@ def _folder(name, values, declared):
         raise ParameterError("out", str(folder), f"a folder that can be written ({error.strerror})") from None
     if not writable:
         raise ParameterError("out", str(folder), "a folder that can be written")
-    inside = {key: path for key, path in _files(values, declared).items() if folder.resolve() in path.resolve().parents}
-    for key, path in inside.items():
-        raise ParameterError(key, str(path), f"outside of {folder}, where this run replaces what is there")
+    for key, path in _files(values, declared).items():
+        require(folder.resolve() not in path.resolve().parents, key, str(path),
+                f"outside of {folder}, where this run replaces what is there")
     # A run replaces an earlier one in its folder, but nothing that is not a run's.
     foreign = [old for old in (*OURS, "report.html") if (folder / old).exists()]
     if foreign and not (folder / "model.npz").exists():

@@ -26,9 +26,14 @@ def area_vectors(vertices, facets):
     return 0.5 * np.cross(along, corners[:, 2] - corners[:, 0])
 
 
-def volume(vertices, facets):
-    """Enclosed volume, the sum of det(corners) / d! over the facets: positive if the normals look outwards."""
-    corners = vertices[facets] - vertices[facets].mean(axis=(0, 1))
+def volume(vertices, facets, origin=None):
+    """Enclosed volume, the sum of det(corners) / d! over the facets: positive if the normals look outwards.
+
+    Of facets that are not closed it is the volume between them and `origin` (d,): only differences count, of facets with
+    one rim.
+    """
+    corners = vertices[facets]
+    corners = corners - (corners.mean(axis=(0, 1)) if origin is None else origin)
     return float(np.linalg.det(corners).sum()) / (2 if vertices.shape[1] == 2 else 6)
 
 

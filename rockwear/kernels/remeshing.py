@@ -6,7 +6,7 @@ edge breaks off.
 """
 import numpy as np
 
-from .boundary import altitudes, area_vectors, check_boundary, crossings, distance, ridges
+from .boundary import altitudes, area_vectors, check_boundary, crossings, distance, ridges, volume
 from .checks import ParameterError
 
 CROWDED = 0.3
@@ -114,6 +114,10 @@ class Mesh:
         rise = vertices[self.beside[:, 1]] - vertices[self.seam[:, 0]]
         return np.einsum("ni,ni->n", rise, normals[self.joined[:, 0]])
 
+    def notches(self, vertices, normals):
+        """(k,) whether the joined facets, with these normals (m, d) of any length, all but close a notch."""
+        return (self.bends(normals) < SHARP) & (self.slope(vertices, normals) > 0)
+
     # ---- operations
 
     def even_out(self):
@@ -157,13 +161,13 @@ class Mesh:
         moved = way.any(axis=1)
         fresh = self.vertices + way
         areas = area_vectors(fresh, self.facets)
-        notch = (self.bends(areas) < SHARP) & (self.slope(fresh, areas) > 0)
+        notch = self.notches(fresh, areas)
         if notch[moved[self.seam].any(axis=1) | moved[self.beside].any(axis=1)].any() or len(crossings(fresh, self.facets, moved)):
             return 0.0
         star, origin, old = moved[self.facets].any(axis=1), fresh.mean(axis=0), self.vertices
-        before = self._volume(star, origin)
+        before = volume(self.vertices, self.facets[star], origin)
         self.vertices = fresh
-        lost = before - self._volume(star, origin)
+        lost = before - volume(self.vertices, self.facets[star], origin)
         if lost <= 0:
             self.vertices, lost = old, 0.0
         return lost
@@ -200,16 +204,12 @@ class Mesh:
             return False
         between, star = np.flatnonzero(has_keep & has_gone), has_keep | has_gone
         origin = self.vertices[keep].copy()
-        was = self._volume(star, origin)
+        was = volume(self.vertices, self.facets[star], origin)
         left = np.flatnonzero(star & ~(has_keep & has_gone))
         taking = left[~self.protected[left]] if not self.protected[left].all() else np.flatnonzero(~self.protected)
         self.pending[taking] += self.pending[between].sum() / len(taking)
         self.facets[has_gone] = np.where(self.facets[has_gone] == gone, keep, self.facets[has_gone])
         return self._restore_volume(keep, left, origin, was) and self._split_longest(gone, between, part)
-
-    def _volume(self, star, origin):
-        """m3 between facets and a point; only differences count, of facets with one rim."""
-        return float(np.linalg.det(self.vertices[self.facets[star]] - origin).sum()) / (2 if self.dimension == 2 else 6)
 
     def _simple(self, keep, gone):
         """Whether the facets at the edge are all that its ends have in common, so that its loss leaves a surface."""
@@ -221,7 +221,7 @@ class Mesh:
         """Move the vertex on its ways so that its star has the volume it `was`. -> whether that is no long way."""
         areas = area_vectors(self.vertices, self.facets[star])
         normal, area = areas.sum(axis=0) / self.dimension, np.linalg.norm(areas, axis=1).sum() / self.dimension
-        way, missing = self.ways[vertex] @ normal, was - self._volume(star, origin)
+        way, missing = self.ways[vertex] @ normal, was - volume(self.vertices, self.facets[star], origin)
         if way @ normal <= (1e-3 * area)**2:
             return abs(missing) <= 1e-12 * area * self.size[star].mean()
         step = way * (missing / (way @ normal))
@@ -262,7 +262,7 @@ class Mesh:
             return False
         star = np.flatnonzero((self.facets == c).any(axis=1) | (np.arange(len(self.facets)) == behind))
         origin = self.vertices[c].copy()
-        was, flat = self._volume(star, origin), self._sharpness(c)[-1] < EDGE
+        was, flat = volume(self.vertices, self.facets[star], origin), self._sharpness(c)[-1] < EDGE
         self.facets[facet], self.facets[behind] = (a, e, c), (e, b, c)
         if flat:
             along = self.vertices[b] - self.vertices[a]
@@ -299,8 +299,7 @@ class Mesh:
             least = 1 - 1e-10 if self.protected[k] else TURN
             if not (were[near & (before["protected"] == self.protected[k])] @ normals[k] > least).any():
                 return False
-        near = other[self.joined].any(axis=1)
-        if ((self.bends(normals) < SHARP) & (self.slope(self.vertices, normals) > 0))[near].any():
+        if self.notches(self.vertices, normals)[other[self.joined].any(axis=1)].any():
             return False
         moved = np.zeros(len(self.vertices), bool)
         moved[self.facets[other]] = True

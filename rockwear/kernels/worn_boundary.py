@@ -8,7 +8,7 @@ import numpy as np
 
 from .boundary import altitudes, area_vectors, crossings, volume
 from .checks import within
-from .remeshing import EDGE, SHAPE, SHARP, TURN, Mesh
+from .remeshing import EDGE, SHAPE, TURN, Mesh
 
 STRIDE = 0.2
 """Longest way of a vertex at once, as a part of the smallest altitude around it."""
@@ -279,9 +279,8 @@ class WornBoundary(Mesh):
         folded = np.zeros(len(fresh), bool)
         folded[self.facets[(cosine <= 0) | ((height < SLIVER * self.size) & (height < was))]] = True
         was_bent, bent = self.bends(before), self.bends(after)
-        slope = self.slope(fresh, after)
-        through = (bent < 0) & (self.slope(self.vertices, before) * slope <= 0)
-        folded[self.facets[self.joined[through | (bent < SHARP) & (bent < was_bent) & (slope > 0)]]] = True
+        through = (bent < 0) & (self.slope(self.vertices, before) * self.slope(fresh, after) <= 0)
+        folded[self.facets[self.joined[through | self.notches(fresh, after) & (bent < was_bent)]]] = True
         return folded
 
     def _spread(self, times):

@@ -24,7 +24,7 @@ M_DEPTH = 0.14e-3
 """m, maximum wear depth of M 13.3 (model II)."""
 WORN_DEPTH = {
     "particles": "Depth worn off each particle that is left: volume over the square that it shows.",
-    "triangles": "How far the surface has gone back: the way from where each triangle was to the nearest point of the worn "
+    "triangles": "How far the surface has gone back: the way from each triangle, as it is, to the nearest point of the new "
                  "surface. Below: the section in the middle plane as it was and as it became.",
     "kept triangles": "How far each triangle would have gone back, volume over area: the shape is kept."}
 """What the colour of wear means."""
