@@ -18,6 +18,9 @@ SILENT = 1e-9
 """N/m, stiffness below which a contact is one of these. So YADE's own scene says which are muted, saved ones too."""
 FACE = 1 - 1e-13
 """Cosine between a contact's and its facet's normal above which the facet is touched inside, not at its rim."""
+SHALLOW = 0.9
+"""Cosine between neighbouring facets above which an inner edge is no corner: a particle whose overlap is more than
+1 - SHALLOW of its radius would leave one of the two, past the edge, while it still presses there."""
 SLIP = (FRICTION, 0.0)
 """The sum that is the way slid."""
 EVEN = 1e-9
@@ -30,7 +33,9 @@ class FacetContact(ToolContact):
     Of the contacts of one particle, one at the rim of its facet counts for nothing as long as a neighbouring facet is
     touched more deeply: it is the same contact seen from next door. It is muted. When the particle goes on to that
     facet, the contact there takes over the shear force, turned to the new normal, so that neither the history nor the
-    energy of the sliding contact is lost. Two facets of an inner corner are both touched inside, and both count.
+    energy of the sliding contact is lost. Two facets of an inner corner are both touched inside, and both count. Where
+    they are nearly in one plane (SHALLOW) only the deeper one does: within a strip as wide as its overlap times their
+    angle a particle would meet the force of two faces, and at its end lose one with all its energy.
 
     Where facets are given elsewhere, the particles there touch others in the next step that they lie in already.
     `born` is the energy with which such contacts begin, J: no work has been done for it.
@@ -120,7 +125,7 @@ class FacetContact(ToolContact):
         standing, doubled, before = [], [], []
         for _, outside, _, index, contact in rows:
             normal = contact[0].geom.normal
-            same = any(index in self.neighbours[other[1]] and (outside or normal.dot(other[0].geom.normal) > FACE)
+            same = any(index in self.neighbours[other[1]] and (outside or normal.dot(other[0].geom.normal) > SHALLOW)
                        for other in before)
             (doubled if same else standing).append(contact)
             before.append(contact)

@@ -1,5 +1,6 @@
 """A tool of facets in YADE: one contact at a time, exact friction and wear, the new shape felt, and runs that resume."""
 import json
+import math
 import signal
 from functools import lru_cache
 
@@ -57,6 +58,15 @@ def test_left_to_themselves_contacts_double_at_the_ends_of_segments():
     found = pressed("chain", "unwatched")
     assert found["ripple"] > 0.2
     assert abs(found["account"] / found["friction"] - 1) > 3e-4
+
+
+def test_a_shallow_inner_edge_is_one_face():
+    """Its two faces are both touched within a strip of 17 um, 44 steps: counted twice the force would double there."""
+    found = pressed("valley")
+    assert found["facets"] == 5 and found["ripple"] < 0.1
+    # 1 mm uphill and 5 mm downhill; the angle of friction is that between the force and the normal of the face.
+    friction, slope = math.atan(0.3), math.radians(2.5)
+    assert found["work"] == pytest.approx(2e4 * (1e-3 * math.tan(friction - slope) + 5e-3 * math.tan(friction + slope)), rel=1e-3)
 
 
 def test_worn_triangles_lose_archards_volume_and_the_next_contact_feels_it():

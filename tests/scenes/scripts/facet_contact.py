@@ -1,6 +1,6 @@
 """Particles pressed against a led tool of facets: YADE's forces and accounts against exact ones. Prints one line of JSON.
 
-    yade -n -x facet_contact.py chain|single|triangles [unwatched]
+    yade -n -x facet_contact.py chain|single|valley|triangles [unwatched]
 """
 import json
 import math
@@ -25,8 +25,11 @@ KIND, WATCHED = sys.argv[1], "unwatched" not in sys.argv
 MU, FORCE, SPEED, K, HARDNESS = 0.3, 2e4, 4.0, 0.1, 5e9
 in_space = KIND == "triangles"
 RADIUS = 3e-3 if in_space else 1.25e-3
-KN = 1e8 if in_space else 90e9
+KN = 90e9 if KIND in ("chain", "single") else 1e8
 box = np.array([[-0.02, 0], [0.02, 0], [0.02, 0.01], [-0.02, 0.01]])
+if KIND == "valley":
+    # An inner edge of 5 degrees, over which the particle comes with an overlap of a sixth of its radius.
+    box = np.insert(box, 1, [0.0, 0.02 * math.tan(math.radians(2.5))], axis=0)
 if in_space:
     vertices, facets = prism(0.5 * box, 8e-3, 1e-3)
     tool = FacetTool(vertices=vertices, facets=facets, density=7830.0)
@@ -38,14 +41,16 @@ FORCE = 2e3 if in_space else FORCE
 scene.put_rock_materials(mu=0.8, loose=FrictViscoMat)
 scene.put_steel(mu=MU, contact_damping=0.9)
 places = [(0.0, 0.0), (-6.5e-3, 0.3e-3)] if in_space else [(0.0, 0.0)]
+start = {"triangles": -0.006, "valley": -0.005}.get(KIND, -0.0123)
+surface = 0.75 * box[1, 1]
 mass = 2500 * math.pi * RADIUS**2
 for x, z in places:
-    body = utils.sphere((x, -RADIUS, z), RADIUS, material="loose rock", mask=scene.ROCK_MASK)
+    body = utils.sphere((x, surface - RADIUS, z), RADIUS, material="loose rock", mask=scene.ROCK_MASK)
     body.state.mass, body.state.inertia = mass, (mass * RADIUS**2,) * 3
     body.state.blockedDOFs = "xzXYZ"
     O.forces.setPermF(O.bodies.append(body), (0, FORCE, 0))
 scene.put_loop_with_facets(kn=20e9, kt=20e9, mu=0.8, tool=(KN, KN, MU))
-bodies = scene.FacetBodies(tool, Straight(start=(-0.006 if in_space else -0.0123, 0.0), velocity=(SPEED, 0.0)))
+bodies = scene.FacetBodies(tool, Straight(start=(start, 0.0), velocity=(SPEED, 0.0)))
 count = len(places)
 motion = Foresight(masses=np.full(count, mass), inertias=np.ones(count), radii=np.full(count, RADIUS),
                    held=np.zeros(count, bool))
