@@ -355,7 +355,7 @@ class Cutting(scene.Scene):
                     contact_conductance=v.contact_conductance, convection=v.convection, ambient=v.ambient_temperature,
                     rock_paths=paths(v.bond_conductance, v.rock_conductivity, pairs=rock.pairs,
                                      cells=lambda: rock.cells, fitted=self._fitted_to_rock),
-                    tool_paths=paths(v.bond_conductance, v.tool_conductivity, pairs=tool.erosion.pairs,
+                    tool_paths=paths(v.bond_conductance, v.tool_conductivity, pairs=tool.pairs,
                                      cells=lambda: tool.cells, fitted=lambda: tool.conductance),
                     conduction=v.conduction, root_temperature=v.root_temperature if v.root == "fixed" else None,
                     surface_period=v.surface_period, acceleration=v.acceleration, speed_up=lambda: self.speed_up)

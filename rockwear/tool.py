@@ -14,13 +14,13 @@ from .rock import cached
 POROSITY = 0.13
 """Of the packing that fills the outline (P 5.2). Its mass and volume are those of the outline."""
 NEIGHBOUR_GAP = 0.2
-"""Particles whose gap is below this part of the mean radius are neighbours: they conduct, and uncover one another."""
+"""Particles whose gap is below this part of the mean radius are joined by a bar, where bars conduct."""
 NEAREST = 3
-"""So many nearest particles are neighbours in any case: what rattles in its cage is no loose piece."""
+"""So many nearest particles are joined in any case: what rattles in its cage is not insulated."""
 
 
 def neighbours(positions, radii):
-    """Pairs (m, 2), i < j, of particles that are neighbours."""
+    """Pairs (m, 2), i < j, of particles that bars join."""
     near = packing.contacts(positions, radii, NEIGHBOUR_GAP * float(radii.mean()))
     closest = cKDTree(positions).query(positions, NEAREST + 1)[1][:, 1:]
     own = np.repeat(np.arange(len(radii)), NEAREST)
@@ -42,7 +42,8 @@ class Tool(ParticleTool):
 
     radius_min, radius_max: m; removal: "volume" or "depth" (kernels.erosion); conductivity: W/m K; density: kg/m3,
     specific_heat: J/kg K. `mounted` marks particles at the top and the back, where the shank holds the tool: they are
-    no surface. Everything else at the boundary is skin.
+    no surface. Everything else whose cell reaches the outline is skin, and a particle that goes uncovers those whose cells
+    have a face with its own: by their gaps some across a pore would stay out of contact, and rock would come to lie in them.
     """
 
     def __init__(self, *, vertices, radius_min, radius_max, seed, removal, material):
@@ -52,14 +53,14 @@ class Tool(ParticleTool):
         stored = cached(lambda: self._fill(radius_min, radius_max, seed, material.conductivity),
                         polygon=self.vertices.tolist(), radius_min=radius_min, radius_max=radius_max, seed=seed,
                         porosity=POROSITY, gap=NEIGHBOUR_GAP, nearest=NEAREST, conductivity=material.conductivity)
-        self.positions, self.radii, pairs = stored["positions"], stored["radii"], stored["pairs"]
+        self.positions, self.radii, self.pairs = stored["positions"], stored["radii"], stored["pairs"]
         self.conductance = float(stored["conductance"])
         self.count = len(self.radii)
         self.volumes = self.area * self.radii**2 / np.sum(self.radii**2)
         self.material = material
         self.mounted = self._mounted()
-        skin = np.flatnonzero(stored["at_boundary"] & ~self.mounted)
-        self.erosion = Erosion(radii=self.radii, volumes=self.volumes, pairs=pairs, skin=skin,
+        skin = np.flatnonzero(self.cells.at_walls & ~self.mounted)
+        self.erosion = Erosion(radii=self.radii, volumes=self.volumes, pairs=self.cells.edges, skin=skin,
                                anchored=np.flatnonzero(self.mounted), rule=removal)
 
     def _fill(self, radius_min, radius_max, seed, conductivity):
@@ -70,9 +71,8 @@ class Tool(ParticleTool):
         square = packing.pack(box=(side, side), radius_min=radius_min, radius_max=radius_max, porosity=POROSITY, seed=seed)
         fitted = calibrated_conductance(positions=square.positions, conductivity=conductivity, conductance=1.0,
                                         edges=neighbours(square.positions, square.radii))
-        distance = -outline.signed_distance(filled.positions, self.vertices)
         return {"positions": filled.positions, "radii": filled.radii, "conductance": fitted[0],
-                "pairs": neighbours(filled.positions, filled.radii), "at_boundary": distance < 1.3 * filled.radii}
+                "pairs": neighbours(filled.positions, filled.radii)}
 
     def _mounted(self):
         x, y = self.positions.T
@@ -110,26 +110,25 @@ class LayeredTool(ParticleTool):
         layers = int(positive("breadth", breadth, "m") / (2 * radius) + 1e-9)
         require(layers > 1, "breadth", breadth, f"at least two particles, {4 * radius:g}", "m")
         stored = cached(lambda: self._fill(radius, seed), section=self.vertices.tolist(), radius=radius, seed=seed,
-                        porosity=POROSITY, gap=NEIGHBOUR_GAP, nearest=NEAREST)
+                        porosity=POROSITY)
         self.breadth = 2 * radius * layers
         self._stack(stored["positions"], layers, float(stored["radii"][0]))
         self.area = outline.area(self.vertices) * self.breadth
         self.volumes = np.full(self.count, self.area / self.count)
         self.masses = density * self.volumes
         number, one = np.arange(self.count), len(stored["radii"])
-        pairs = np.vstack([*(stored["pairs"] + one * layer for layer in range(layers)),
+        section = cells(stored["positions"], polygon=self.vertices)
+        pairs = np.vstack([*(section.edges + one * layer for layer in range(layers)),
                            np.column_stack([number[:-one], number[one:]])])
         self.mounted = self.positions[:, 1] > self.vertices[:, 1].max() - 1.5 * self.radii
-        outermost = (number < one) | (number >= self.count - one) | np.tile(stored["at_boundary"], layers)
+        outermost = (number < one) | (number >= self.count - one) | np.tile(section.at_walls, layers)
         self.erosion = Erosion(radii=self.radii, volumes=self.volumes, pairs=pairs, thickness=2 * self.radii,
                                skin=np.flatnonzero(outermost & ~self.mounted), anchored=np.flatnonzero(self.mounted),
                                rule=removal)
 
     def _fill(self, radius, seed):
         filled = packing.pack(polygon=self.vertices, radius_min=radius, radius_max=radius, porosity=POROSITY, seed=seed)
-        distance = -outline.signed_distance(filled.positions, self.vertices)
-        return {"positions": filled.positions, "radii": filled.radii, "pairs": neighbours(filled.positions, filled.radii),
-                "at_boundary": distance < 1.3 * filled.radii}
+        return {"positions": filled.positions, "radii": filled.radii}
 
     def _stack(self, places, layers, radius):
         z = 2 * radius * (np.arange(layers) - 0.5 * (layers - 1))

@@ -84,6 +84,37 @@ def test_tool_has_the_mass_of_its_outline_and_no_loose_particle():
     assert made.positions[skin, 1].min() < 0.6e-3
 
 
+def within_reach(made, radius):
+    """Living particles that are no skin and are touched by a disc of this radius (m) which lies in no other particle."""
+    alive = np.flatnonzero(made.erosion.alive)
+    hidden = np.setdiff1d(alive[~made.mounted[alive]], list(made.erosion.skin))
+    angles = np.linspace(0, 2 * np.pi, 96, endpoint=False)
+    around = np.column_stack([np.cos(angles), np.sin(angles)])
+    found = []
+    for one in hidden.tolist():
+        centres = made.positions[one] + (made.radii[one] + radius) * around
+        others = alive[alive != one]
+        gaps = np.linalg.norm(centres[:, None] - made.positions[others], axis=2) - made.radii[others] - radius
+        if (gaps.min(axis=1) > 1e-9).any():
+            found.append(one)
+    return found
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_whatever_rock_can_reach_is_skin_as_a_tool_wears(seed):
+    """A particle that rock meets and YADE does not know would appear in the middle of it one day, with up to 440 J."""
+    made, chance = make_tool(), np.random.default_rng(seed)
+    assert within_reach(made, 1e-3) == []
+    for _ in range(6):
+        skin = np.array(sorted(made.erosion.skin))
+        gone = np.zeros(made.count)
+        gone[chance.choice(skin[~made.mounted[skin]], 10)] = made.volumes.max()
+        made.erosion.wear(gone)
+        made.erosion.drop(made.erosion.detached().tolist())
+        assert within_reach(made, 1e-3) == []
+    assert np.sum(~made.erosion.alive) > 50
+
+
 def test_tool_conducts_like_steel():
     """The pairs' one conductance, fitted on one packing, holds on others to the scatter between packings of this size."""
     made = make_tool()

@@ -18,7 +18,7 @@ SILENT = 1e-9
 """N/m, stiffness below which a contact is one of these. So YADE's own scene says which are muted, saved ones too."""
 FACE = 1 - 1e-13
 """Cosine between a contact's and its facet's normal above which the facet is touched inside, not at its rim."""
-SHALLOW = 0.9
+SHALLOW = 0.5
 """Cosine between neighbouring facets above which an inner edge is no corner: a particle whose overlap is more than
 1 - SHALLOW of its radius would leave one of the two, past the edge, while it still presses there."""
 SLIP = (FRICTION, 0.0)

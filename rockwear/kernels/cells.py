@@ -45,6 +45,11 @@ class Cells:
         """(m,) W/K between neighbours, lambda A/d; conductivity in W/(m K), greater than 0, or ParameterError."""
         return positive("conductivity", conductivity, "W/(m K)") * self.faces / self.distances
 
+    @property
+    def at_walls(self):
+        """(n,) bool: the cells that touch any side of the container."""
+        return np.isin(np.arange(len(self.volumes)), np.concatenate([nodes for nodes, _, _ in self.walls.values()]))
+
     def wall_conductance(self, side, conductivity):
         """(nodes, (k,) W/K between their centres and a side of the container, lambda A/distance).
 

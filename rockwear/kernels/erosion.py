@@ -30,11 +30,12 @@ REMOVAL = {"volume": volume_limit, "depth": depth_limit, "none": no_limit}
 class Erosion:
     """Worn volume on a particle body, and the removal of its particles.
 
-    radii: (n,) m; volumes: (n,) m3, the part of the body's volume that each particle stands for; pairs: (m, 2) touching
-    particles; skin: indices of particles open to wear at first; anchored: indices of those held by the shank;
-    thickness: m, one or (n,), of what a particle stands for across: 1 in the plane, 2 r for a sphere, whose face is
-    then the square (2 r)^2; rule: "volume" (conserving: the excess over a particle's volume passes to what its removal uncovers, so that
-    removed + stored = Archard's volume at every moment), "depth" (the sources': no excess is passed on) or "none".
+    radii: (n,) m; volumes: (n,) m3, the part of the body's volume that each particle stands for; pairs: (m, 2)
+    particles that cover one another and hold together; skin: indices of particles open to wear at first; anchored:
+    indices of those held by the shank; thickness: m, one or (n,), of what a particle stands for across: 1 in the plane,
+    2 r for a sphere, whose face is then the square (2 r)^2; rule: "volume" (conserving: the excess over a particle's
+    volume passes to what its removal uncovers, so that removed + stored = Archard's volume at every moment), "depth"
+    (the sources': no excess is passed on) or "none".
     `worn` is the volume that the wear law took from each particle, `stored` what of it has not led to a removal yet.
     Raises ParameterError for an unknown rule, an index out of range, or volumes that are not positive.
     """
