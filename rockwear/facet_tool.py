@@ -3,7 +3,7 @@ import warnings
 
 import numpy as np
 
-from .kernels.boundary import area_vectors, check_boundary, distance, refine, segments, worn_depth
+from .kernels.boundary import area_vectors, check_boundary, distance, refine, segments
 from .kernels.checks import ParameterError, positive
 from .kernels.worn_boundary import WornBoundary
 
@@ -49,8 +49,12 @@ class FacetTool:
 
     @property
     def worn_depth(self):
-        """(n,) m by which the surface has gone back from each of its first vertices; see kernels.boundary.worn_depth."""
-        return worn_depth(self.first, self.boundary.vertices, self.boundary.facets)
+        """(n,) m by which the surface has gone back from each of its first vertices: from there to what is nearest of it.
+
+        On a face that is the recession along its normal; at an edge that has become another, the way to the nearest of
+        it. It depends on the two shapes alone, whatever vertices and facets they are made of.
+        """
+        return distance(self.first, self.boundary.vertices, self.boundary.facets)
 
     @property
     def depth_below(self):

@@ -207,16 +207,6 @@ def _squared_distances(points, triangles):
     return np.where(between, np.einsum("nd,nd->n", away[:, 0], normal)**2, to_side)
 
 
-def worn_depth(first, vertices, facets):
-    """(n,) m by which a worn surface has gone back from each of its first vertices (n, d): the distance from there to the
-    nearest point of the facets as they are now, at `vertices` (n, d).
-
-    On a face that is the recession along its normal; at an edge that has become another, the way to the nearest of it. It
-    depends on the two shapes alone, whatever vertices and facets they are made of.
-    """
-    return distance(first, vertices, facets)
-
-
 def segments(polygon):
     """The boundary of a polygon (k, 2): its own corners, a segment a side."""
     corners = check_polygon(polygon)

@@ -2,7 +2,7 @@
 import numpy as np
 from matplotlib import colormaps
 
-from ..kernels.boundary import worn_depth
+from ..kernels.boundary import distance
 from ..kernels.outline import contour, nearest_arc
 from . import shapes
 from .cutting import CRACK, cut, draw_cracks, draw_energy, draw_forces, moving_picture, summary_line, trusted, worn_stages
@@ -109,7 +109,7 @@ def shape(run):
     shown = worn_stages(run, 8)
     figure, panels = canvas(12, 6, 1, 2)
     last = run.snapshot(-1)
-    moved = worn_depth(first, last["tool_vertices"], last["tool_facets"])
+    moved = distance(first, last["tool_vertices"], last["tool_facets"])
     near = MM * first[moved > 0.02 * moved.max()] if moved.any() else MM * first[[first[:, 1].argmin()]]
     for axes in panels:
         axes.plot(*MM * closed(first, facets).T, color="black", linewidth=1, linestyle="--")

@@ -9,7 +9,7 @@ from matplotlib.colors import LinearSegmentedColormap, Normalize, to_rgb
 from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
-from ..kernels.boundary import area_vectors, distance, worn_depth
+from ..kernels.boundary import area_vectors, distance
 from . import shapes
 from .cutting import CRACK, DAMAGE, LOOSE, PALE, STEEL, SUPPORT, trusted
 from .page import Section, machine_tiles, number, percent, quantity, tiles
@@ -341,7 +341,7 @@ def worn_triangles(run):
         return None
     shot = run.snapshot(-1)
     facets, depth = shot["tool_facets"], MM * facet_depth(run, shot)
-    norm = Normalize(0, MM * run.result("maximum_wear_depth"))
+    norm = Normalize(0, depth.max())
     rows = 2 if made_of(run) == "triangles" else 1
     figure = Figure(figsize=(12, 4.6 * rows), layout="constrained")
     seen = [figure.add_subplot(rows, 2, k, projection="3d") for k in (1, 2)]
@@ -383,7 +383,7 @@ def sections_of_tool(run, panels):
             lines = MM * shapes.section(shot["tool_vertices"], shot["tool_facets"], middle)
             axes.add_collection(LineCollection(lines, color=colour, linewidth=1.6, label=f"t = {number(run.times[k])} s"))
     last = run.snapshot(-1)
-    depth = worn_depth(first, last["tool_vertices"], last["tool_facets"])
+    depth = distance(first, last["tool_vertices"], last["tool_facets"])
     near = MM * first[depth > 0.1 * depth.max()]
     for axes, points, title in zip(panels, (MM * first, near), ("section in the middle plane", "where it is worn")):
         (left, low), (right, high) = points[:, :2].min(axis=0), points[:, :2].max(axis=0)

@@ -2,7 +2,7 @@
 import numpy as np
 import pytest
 
-from rockwear.kernels.boundary import distance, nearest_on_triangle, prism, refine, segments, worn_depth
+from rockwear.kernels.boundary import distance, nearest_on_triangle, prism, refine, segments
 
 SQUARE = np.array([[0, 0], [0.04, 0], [0.04, 0.03], [0, 0.03]])
 
@@ -39,7 +39,7 @@ def test_worn_depth_is_the_recession_of_a_face_whatever_way_its_vertices_went(di
     vertices[inside, 1] += 1e-3
     top = np.isclose(first[:, 1], 0.03) & (first[:, 0] > 0.01) & (first[:, 0] < 0.03)
     vertices[top, 0] += 1e-3
-    depth = worn_depth(first, vertices, facets)
+    depth = distance(first, vertices, facets)
     assert inside.any() and top.any()
     assert depth[front] == pytest.approx(np.full(front.sum(), 2e-3), rel=1e-12)
     assert depth[~front] == pytest.approx(np.zeros((~front).sum()), abs=1e-15)
