@@ -15,6 +15,8 @@ STRIDE = 0.2
 LEAST_STRIDE = 1e-4
 """An update waits until some vertex has so far to go, as a part of the same altitude: below it the last digit of the
 coordinates would spoil the volume."""
+NO_STRIDE = 1e-9 * LEAST_STRIDE
+"""What vertices would have to go after an update's first step and is less than this, by the same altitude, is round-off."""
 DENT = 0.1, 0.2
 """Mean slope from a vertex up to its neighbours: from the first on it hands wear over to them, from the second on all
 of it."""
@@ -113,6 +115,8 @@ class WornBoundary(Mesh):
                 break
             self._mend()
             motion, weights, reach = self._motion()
+            if reach.max() < NO_STRIDE:
+                break
         # Last, so that the next demands, made for the facets as they lie then, find them there.
         self._mend()
         return True
@@ -211,19 +215,17 @@ class WornBoundary(Mesh):
             return False
         taken = -self._change(fresh - self.vertices)
         self.vertices = fresh
+        most = int(np.argmax(self.pending * self.share.sum(axis=1)))
         total = float(self.pending.sum())
         undone = self.pending * (self.share * (1 - part[self.facets])).sum(axis=1)
         if undone.sum() <= 1e-9 * total:
             # What lags is wear that dents have handed on: it stays with the facets it came from.
             undone = self.pending
         self.pending = undone * ((total - wanted) / undone.sum())
-        self._book(taken, wanted)
-        return True
-
-    def _book(self, taken, wanted):
-        """What the last digits of the coordinates took beside what was wanted is settled with the next motion."""
         self.removed += taken
-        self.pending[np.argmax(self.pending)] += wanted - taken
+        # What the last digits of the coordinates took beside what was wanted is settled with the next motion.
+        self.pending[most] += wanted - taken
+        return True
 
     def _length(self, motion, wanted):
         """s for which the motion s u takes exactly `wanted` (m3), by Newton's rule on the polynomial."""
