@@ -645,7 +645,7 @@ class Cutting(scene.Scene):
         part = book["residual"] / max(abs(value) for value in book.values()) if book["residual"] else 0.0
         return [] if abs(part) <= ENERGY_MISSED else [
             f"the energy book misses {100 * part:.2g} % of its largest entry: forces and wear are no better known than that; "
-            "a smaller time_step_fraction may tell why"]
+            "a smaller sampling_period or time_step_fraction may tell why"]
 
     def _worn_warnings(self):
         short = [] if math.isfinite(self._foremost()) else [

@@ -46,6 +46,15 @@ def test_energy_audit(cut):
     assert abs(book["residual"]) < 0.02 * book["tool_work"]
 
 
+def test_energy_that_the_book_misses_is_said(cut, tmp_path):
+    """Forces sampled every 100 steps only, some of a collision's length."""
+    run = test_tooth(tmp_path / "out", heat="false", cycles=0, report="false", sampling_period=100)
+    energy = run.summary["audits"]["energy"]
+    assert abs(energy["residual"]) > 0.05 * energy["tool_work"]
+    assert "the energy book misses" in run.summary["warnings"][0] and "the energy book misses" in run.stderr
+    assert not any("energy book" in line for line in cut.summary["warnings"])
+
+
 def test_heat_book_closes_to_round_off(cut):
     book = cut.summary["audits"]["heat"]
     assert book["generated"] > 10
