@@ -19,7 +19,7 @@ from .kernels.bond_laws import LINEAR_LAWS, linear_law
 from .kernels.checks import ParameterError, require
 from .kernels.conduction import PATHS, HeatNetwork, calibrated_conductance, effusivity, effusivity_share, paths
 from .kernels.erosion import REMOVAL
-from .kernels.outline import read_outline, tooth
+from .kernels.outline import read_outline, tip, tooth
 from .kernels.rigid_motion import Straight
 from .kernels.stability import critical_time_step
 from .kernels.wear_laws import LAWS, wear_law
@@ -181,8 +181,12 @@ class Cutting(scene.Scene):
         self.cracks_of_past_cycles = []
 
     def _outline(self, v):
-        vertices = read_outline(v.outline) if v.outline else self._tooth(v)
-        # The depth of cut counts from the lowest point, wherever a file has its origin.
+        if v.outline:
+            # Its tip is where the tooth of the parameters has its own, wherever the file has its origin.
+            vertices = read_outline(v.outline)
+            return vertices - tip(vertices) - [v.tip_radius, 0.0]
+        vertices = self._tooth(v)
+        # The chords of a round tip may end above its lowest point, from which the depth of cut counts.
         return vertices - [0.0, vertices[:, 1].min()]
 
     def _tooth(self, v):

@@ -1,4 +1,5 @@
 """The cut in space (M 13): a tooth lowered into loose or bonded spheres, then drawn through them."""
+import math
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -15,11 +16,12 @@ from .engines.record import Recorder, Watch
 from .engines.turning import Turning
 from .engines.wear import ToolContact, Wear
 from .facet_cutting import FacetCutting, check_sampling
-from .facet_tool import FacetTool, read_stl, write_stl
+from .facet_tool import MOST_FACETS, FacetTool, check_size, read_stl, write_stl
 from .kernels.archard import KELVIN, Hardness
 from .kernels.bond_laws import linear_law
-from .kernels.boundary import prism, refine
+from .kernels.boundary import area_vectors, prism, refine
 from .kernels.checks import require
+from .kernels.outline import area, perimeter, tip
 from .kernels.rigid_motion import Straight
 from .kernels.stability import critical_time_step
 from .kernels.wear_laws import wear_law
@@ -338,17 +340,21 @@ class TriangleCutting3D(Cutting3D, FacetCutting):
         require(size[1] > v.depth_of_cut, "stl", f"{v.stl} of a height of {size[1]:g}",
                 f"higher than depth_of_cut = {v.depth_of_cut:g}", "m")
         # Its tip goes where the tooth of the parameters has its own, wherever the file has its origin.
-        low, high = vertices.min(axis=0), vertices.max(axis=0)
-        tip = vertices[vertices[:, 1] < low[1] + 1e-6 * size[1], 0].max()
-        vertices, facets = refine(vertices - [tip + v.tip_radius, low[1], 0.5 * (low[2] + high[2])], facets,
-                                  1.5 * v.facet)
+        self._check_facet(float(np.linalg.norm(area_vectors(vertices, facets), axis=1).sum()))
+        (x, y), z = tip(vertices), vertices[:, 2]
+        vertices, facets = refine(vertices - [x + v.tip_radius, y, 0.5 * (z.min() + z.max())], facets, 1.5 * v.facet)
         seen = vertices[:, :2]
         return seen[ConvexHull(seen).vertices], FacetTool(vertices=vertices, facets=facets, density=v.tool_density)
 
     def _make_tool(self, vertices):
         v = self.v
+        self._check_facet(2 * area(vertices) + perimeter(vertices) * v.breadth)
         corners, facets = prism(vertices, v.breadth, v.facet)
         return FacetTool(vertices=corners, facets=facets, density=v.tool_density)
+
+    def _check_facet(self, surface):
+        """Of triangles that are halves of squares; surface: m2."""
+        check_size("facet", self.v.facet, math.sqrt(2 * surface / MOST_FACETS))
 
     def write_shape(self, folder):
         if self.v.wear_coefficient and self.v.reshape:

@@ -4,8 +4,18 @@ import warnings
 import numpy as np
 
 from .kernels.boundary import area_vectors, check_boundary, distance, refine, segments
-from .kernels.checks import ParameterError, positive
+from .kernels.checks import ParameterError, positive, require
+from .kernels.outline import perimeter
 from .kernels.worn_boundary import WornBoundary
+
+
+MOST_FACETS = 20_000
+"""A tool may have: by then an update of its wear takes seconds."""
+
+
+def check_size(name, size, least):
+    """Raise ParameterError (name) for facets of a size (m) less than `least`, of which the tool would have too many."""
+    require(size >= least, name, size, f"at least {least:.3g}: the tool would have more than {MOST_FACETS} facets", "m")
 
 
 class FacetTool:
@@ -29,6 +39,7 @@ class FacetTool:
     @classmethod
     def of_outline(cls, polygon, *, segment, density):
         """Segments of at most `segment` m along a polygon (k, 2), longer ones cut in halves."""
+        check_size("segment", segment, perimeter(polygon) / MOST_FACETS)
         vertices, facets = refine(*segments(polygon), positive("segment", segment, "m"))
         return cls(vertices=vertices, facets=facets, density=density)
 

@@ -13,6 +13,7 @@ from rockwear.kernels.checks import ParameterError, finite, not_negative, positi
 
 ARC_CHORD_ERROR = 1e-3  # sagitta of the chords that replace an arc, as a fraction of its radius
 CORNER = math.radians(10)  # a boundary that turns by more at one vertex has a corner there
+MOST_CORNERS = 4000  # of a file: each of its edges is held against each other
 CHUNK = 2_000_000  # point-edge pairs looked at together: some 100 MB of temporaries
 
 
@@ -216,7 +217,17 @@ def read_outline(path):
                 continue
             raise ParameterError("outline", path, f"two numbers a row, unlike line {line}: {','.join(row)}") from None
         vertices.append((x, y))
-    return check_polygon(np.reshape(vertices, (-1, 2)), "outline")
+    require(len(vertices) <= MOST_CORNERS, "outline", f"{path}, {len(vertices)} vertices", f"of at most {MOST_CORNERS}")
+    try:
+        return check_polygon(np.reshape(vertices, (-1, 2)), "outline")
+    except ParameterError as error:
+        raise ParameterError("outline", f"{path}, {error.value}", error.rule, error.unit) from None
+
+
+def tip(vertices):
+    """(2,) m, the tip of a tool that moves in +x: the foremost of its lowest vertices (n, 2 or 3) m."""
+    x, y = vertices[:, 0], vertices[:, 1]
+    return np.array([x[y < y.min() + 1e-6 * np.ptp(y)].max(), y.min()])
 
 
 def nearest_arc(points, along, arc):

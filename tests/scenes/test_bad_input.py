@@ -87,7 +87,10 @@ def test_bad_command_line(words, expected, tmp_path):
 
 
 @pytest.mark.parametrize("rows, expected", [
-    ("0,0\n1,0\n", "outline"), ("0,0\n0.02,0.02\n0.02,0\n0,0.02\n", "outline"), ("x,y\n0,0\n1,a\n0,1\n", "outline")])
+    ("0,0\n1,0\n", "tooth.csv, 2 vertices: must be at least 3 vertices"),
+    ("0,0\n0.02,0.02\n0.02,0\n0,0.02\n", "tooth.csv, 4 vertices: must be free of repeated vertices"),
+    ("x,y\n0,0\n1,a\n0,1\n", "tooth.csv: must be two numbers a row, unlike line 3"),
+    ("\n".join(f"{k},{k % 2}" for k in range(5000)), "tooth.csv, 5000 vertices: must be of at most 4000")])
 def test_bad_outline(rows, expected, tmp_path):
     file = tmp_path / "tooth.csv"
     file.write_text(rows, encoding="utf-8")

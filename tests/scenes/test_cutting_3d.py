@@ -243,6 +243,7 @@ def test_an_interrupted_cut_goes_on_bit_for_bit(tmp_path, name, own):
 @pytest.mark.parametrize("name, values, word", [
     ("cutting_3d_wear", dict(cut_time=5), "cut_time"), ("cutting_3d_wear", dict(tool_radius=0.02), "tool_radius"),
     ("cutting_3d_triangles", dict(sampling_period=2), "sampling_period = 2 steps: must be 1"),
+    ("cutting_3d_triangles", dict(facet=1e-6), "facet = 1e-06 m: must be at least 0.0"),
     ("granular_3d", dict(start=0.1), "start"), ("granular_3d", dict(Rn=1), "Rn")])
 def test_what_cannot_be_is_refused(tmp_path, name, values, word):
     usual = {"granular_3d": LOOSE, "cutting_3d_triangles": FACETED, "cutting_3d_wear": BONDED}[name]

@@ -180,7 +180,9 @@ def test_wear_too_fast_for_the_shape_ends_with_what_to_change(tmp_path):
 
 @pytest.mark.parametrize("values, words", [
     ({"heat": "true"}, "heat = true: must be false"), ({"sampling_period": 2}, "sampling_period = 2 steps: must be 1"),
-    ({"segment": 0}, "segment = 0 m: must be greater than 0"), ({"work_fraction": 2}, "work_fraction = 2: must be at most 1")])
+    ({"segment": 0}, "segment = 0 m: must be greater than 0"),
+    ({"segment": 1e-9}, "segment = 1e-09 m: must be at least 5.04e-06: the tool would have more than 20000 facets"),
+    ({"work_fraction": 2}, "work_fraction = 2: must be at most 1")])
 def test_bad_value(values, words, tmp_path):
     run = cut(tmp_path / "out", **values)
     assert run.code == 2 and words in run.stderr and not (tmp_path / "out").exists()
