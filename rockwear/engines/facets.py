@@ -5,6 +5,7 @@ import numpy as np
 from yade import Law2_ScGeom_FrictViscoPhys_CundallStrackVisco, O, Vector3
 
 from ..kernels.boundary import altitudes, area_vectors
+from ..kernels.crossing import crossing_force
 from ..kernels.wear_laws import FRICTION, WORK
 from ..kernels.worn_boundary import STEPS, STRIDE, Folded, WornAway
 from . import contact_energy, law_functor
@@ -18,7 +19,7 @@ SILENT = 1e-9
 """N/m, stiffness below which a contact is one of these. So YADE's own scene says which are muted, saved ones too."""
 FACE = 1 - 1e-13
 """Cosine between a contact's and its facet's normal above which the facet is touched inside, not at its rim."""
-SHALLOW = 0.5
+SHALLOW = 0.8
 """Cosine between neighbouring facets above which an inner edge is no corner: a particle whose overlap is more than
 1 - SHALLOW of its radius would leave one of the two, past the edge, while it still presses there."""
 SLIP = (FRICTION, 0.0)
@@ -35,10 +36,11 @@ class FacetContact(ToolContact):
     facet, the contact there takes over the shear force, turned to the new normal, so that neither the history nor the
     energy of the sliding contact is lost. Two facets of an inner corner are both touched inside, and both count. Where
     they are nearly in one plane (SHALLOW) only the deeper one does: within a strip as wide as its overlap times their
-    angle a particle would meet the force of two faces, and at its end lose one with all its energy.
+    angle a particle would meet the force of two faces, and at its end lose one with all its energy. From one to the
+    other it is led so that the step keeps its energy (kernels.crossing).
 
-    Where facets are given elsewhere, the particles there touch others in the next step that they lie in already.
-    `born` is the energy with which such contacts begin, J: no work has been done for it.
+    Where the shape has changed, particles touch other facets in the next step, or more deeply, than they did. `born` is
+    the energy, J, with which such contacts begin: no work has been done for it.
 
     YADE's account of friction is one for rock and tool here: `in_account` is the tool's part of it, slip times the force
     after it. Every step is to be sampled.
@@ -73,7 +75,7 @@ class FacetContact(ToolContact):
         self._note_springs()
 
     def expect_births(self):
-        """Contacts that do not stand now and count in the next step are born then."""
+        """Contacts that do not stand now and count in the next step are born then, and others end."""
         self.standing = {contact[1:3] for contact in self.possible if contact[0].isReal and not muted(contact)}
 
     def _note_births(self, handed_over):
@@ -81,7 +83,7 @@ class FacetContact(ToolContact):
             interaction = contact[0]
             if (interaction.isReal and not muted(contact) and contact[1:3] not in self.standing
                     and id(contact) not in handed_over):
-                self.born += 0.5 * interaction.phys.kn * max(interaction.geom.penetrationDepth, 0.0)**2
+                self.born += spring_energy(contact)
         self.standing = None
 
     def _book(self, contact, before, after, slip):
@@ -109,6 +111,8 @@ class FacetContact(ToolContact):
                     ending.remove(old)
                     successions.append((old, new))
         for contact in ending:
+            if self.standing is not None and contact[1:3] in self.standing:
+                self.born -= spring_energy(contact)
             self._cancel(contact)
             self._silence(contact)
         return successions
@@ -170,7 +174,7 @@ class FacetContact(ToolContact):
         phys.normalForce = phys.shearForce = phys.normalViscous = Vector3.Zero
 
     def _hand_over(self, old, new):
-        shear = Vector3(old[0].phys.shearForce)
+        shear, pressing, energy = Vector3(old[0].phys.shearForce), spring_force(old), spring_energy(old)
         size, normal = shear.norm(), new[0].geom.normal
         self._silence(old)
         self._wake(new)
@@ -179,6 +183,24 @@ class FacetContact(ToolContact):
             if old[3] != new[3]:
                 turned = -turned
             new[0].phys.shearForce = turned * (size / turned.norm())
+        gain = spring_energy(new) - energy
+        if self.standing is None:
+            self._cross(new, pressing, gain)
+        else:
+            self.born += gain
+
+    def _cross(self, contact, before, gain):
+        """Lead a particle over from a spring that pressed it with `before` (N) to that of `contact`, which holds more
+        energy by `gain` (J)."""
+        interaction, index, rock, tool_first = contact
+        if not self.motion.per_mass[rock]:
+            return
+        velocity = Vector3(*self.tool.velocity_at(index, interaction, tool_first))
+        force = Vector3(*crossing_force(before=before, after=spring_force(contact), gain=gain, mass=1 / self.motion.per_mass[rock],
+                                        velocity=O.bodies[rock].state.vel - velocity, change=self.motion.of(rock), dt=O.dt))
+        O.forces.addF(rock, force)
+        self.impulse -= np.array(force) * O.dt
+        self.work_done += force.dot(velocity) * O.dt
 
     def elastic_energy(self):
         return contact_energy((i for body in self.tool.ids for i in O.interactions.withBody(body)), self.tool.overlap)
@@ -196,6 +218,19 @@ class FacetContact(ToolContact):
 def muted(contact):
     """Whether this entry (interaction, facet, particle, facet first) of the contacts is muted."""
     return contact[0].phys.kn < SILENT
+
+
+def spring_force(contact):
+    """N, with which the normal spring of a contact presses the particle."""
+    interaction, _, _, tool_first = contact
+    force = interaction.geom.normal * (interaction.phys.kn * max(interaction.geom.penetrationDepth, 0.0))
+    return force if tool_first else -force
+
+
+def spring_energy(contact):
+    """J in the springs of a contact."""
+    phys, depth = contact[0].phys, max(contact[0].geom.penetrationDepth, 0.0)
+    return 0.5 * (phys.kn * depth**2 + phys.shearForce.squaredNorm() / phys.ks)
 
 
 def yades_account():
@@ -275,7 +310,7 @@ class FacetWear(WearEngine):
         if moved:
             if self.boundary.remeshed != remeshed:
                 self.contact.neighbours = self.boundary.neighbours()
-                self.contact.expect_births()
+            self.contact.expect_births()
             self.tool.reshape()
             self.contact_energy_removed += stored - self.contact.elastic_energy()
 

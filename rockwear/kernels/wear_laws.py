@@ -34,6 +34,9 @@ NORMAL, FRICTION = "normal", "friction"
 WORK = (FRICTION, 1.0)
 """The sum that is the friction work."""
 
+STEEPEST = 20
+"""Exponent of a power law."""
+
 
 class WearLaw:
     """One mode. k: -; needs: ((force, exponent),), the sums of F^exponent s that `volume` takes."""
@@ -97,6 +100,7 @@ class PowerLaw(DissipationArchard):
     def __init__(self, *, k, mu, exponent, share=1.0):
         super().__init__(k=k, mu=mu, share=share)
         self.exponent = positive("exponent", exponent)
+        require(self.exponent <= STEEPEST, "exponent", self.exponent, f"at most {STEEPEST}: forces to that power leave all bounds")
 
     @property
     def reference(self):

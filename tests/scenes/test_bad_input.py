@@ -44,6 +44,7 @@ CASES = [
     ({"removal": "magic"}, "removal = magic: must be one of volume, depth"),
     ({"wear_coefficient": -1}, "wear_coefficient = -1: must be at least 0"),
     ({"wear_law": "modes", "wear_modes": "0.01/1/0.5"}, "modes = 0.5: must be given shares of the friction that add up to 1"),
+    ({"wear_law": "power", "wear_exponent": 1e300}, "exponent = 1e+300: must be at most 20"),
     ({"contact_damping": 2}, "contact_damping = 2: must be at most 1"),
     ({"heat_fraction": 1.5}, "heat_fraction = 1.5: must be at most 1"),
     ({"tool_temperature": 1500}, "tool_temperature = 1500 K: must be inside the hardness table of MET91, 273.15 to 873.15"),
