@@ -5,7 +5,7 @@ import numpy as np
 from yade import Law2_ScGeom_FrictViscoPhys_CundallStrackVisco, O, Vector3
 
 from ..kernels.boundary import altitudes, area_vectors
-from ..kernels.crossing import crossing_force
+from ..kernels.inner_edge import joined_depth
 from ..kernels.wear_laws import FRICTION, WORK
 from ..kernels.worn_boundary import STEPS, STRIDE, Folded, WornAway
 from . import contact_energy, law_functor
@@ -36,8 +36,9 @@ class FacetContact(ToolContact):
     facet, the contact there takes over the shear force, turned to the new normal, so that neither the history nor the
     energy of the sliding contact is lost. Two facets of an inner corner are both touched inside, and both count. Where
     they are nearly in one plane (SHALLOW) only the deeper one does: within a strip as wide as its overlap times their
-    angle a particle would meet the force of two faces, and at its end lose one with all its energy. From one to the
-    other it is led so that the step keeps its energy (kernels.crossing).
+    angle a particle would meet the force of two faces, and at its end lose one with all its energy. Where both are
+    about equally deep the contact is one with their joined depth (kernels.inner_edge): `notches` are these pairs
+    (facet that counts, facet beside it, particle). Coulomb's limit there is that of the depth in the facet that counts.
 
     Where the shape has changed, particles touch other facets in the next step, or more deeply, than they did. `born` is
     the energy, J, with which such contacts begin: no work has been done for it.
@@ -50,7 +51,7 @@ class FacetContact(ToolContact):
         super().__init__(needs=(*needs, SLIP), **common)
         self.neighbours = neighbours
         self.in_account = self.born = 0.0
-        self.standing = None
+        self.notches, self.reshaped = [], False
 
     def connect(self):
         super().connect()
@@ -66,25 +67,34 @@ class FacetContact(ToolContact):
     def act(self):
         if self.collider.numAction != self.collided:
             self.look_around()
+        held = self._energy(known=self.springs) if self.reshaped else 0.0
+        self.notches = []
         successions = [pair for rock, group in self.shared for pair in self._judge(rock, group)]
         self._sample_all()
+        for pair in self._pairs():
+            self._join(*pair)
         for old, new in successions:
             self._hand_over(old, new)
-        if self.standing is not None:
-            self._note_births({id(new) for _, new in successions})
+        if self.reshaped:
+            self.born += self._energy() - held
+        self.reshaped = False
         self._note_springs()
 
-    def expect_births(self):
-        """Contacts that do not stand now and count in the next step are born then, and others end."""
-        self.standing = {contact[1:3] for contact in self.possible if contact[0].isReal and not muted(contact)}
+    def shape_has_changed(self):
+        """The contacts of the next step are those with another shape."""
+        self.reshaped = True
 
-    def _note_births(self, handed_over):
-        for contact in self.possible:
-            interaction = contact[0]
-            if (interaction.isReal and not muted(contact) and contact[1:3] not in self.standing
-                    and id(contact) not in handed_over):
-                self.born += spring_energy(contact)
-        self.standing = None
+    def _energy(self, known=None):
+        """J in the springs of contacts, or of those `known`, at the depths that YADE has found in this step."""
+        real = [contact for contact in self.possible if contact[0].isReal and (known is None or contact[1:3] in known)]
+        return (math.fsum(spring_energy(contact) for contact in real)
+                + math.fsum(self._joined_energy(pair, depth_of) for pair in self._pairs()))
+
+    def _pairs(self):
+        """The contacts of the notches: [(contact that counts, contact beside it)]."""
+        real = {contact[1:3]: contact for contact in self.possible if contact[0].isReal} if self.notches else {}
+        found = [(real.get((one, rock)), real.get((other, rock))) for one, other, rock in self.notches]
+        return [pair for pair in found if None not in pair]
 
     def _book(self, contact, before, after, slip):
         if not muted(contact):
@@ -100,6 +110,7 @@ class FacetContact(ToolContact):
                 self._wake(contact)
             return []
         standing, doubled = self._ranked(rock, real)
+        self._note_notches(rock, standing, doubled)
         ending = [contact for contact in doubled if not muted(contact)]
         successions = []
         for new in standing:
@@ -111,8 +122,6 @@ class FacetContact(ToolContact):
                     ending.remove(old)
                     successions.append((old, new))
         for contact in ending:
-            if self.standing is not None and contact[1:3] in self.standing:
-                self.born -= spring_energy(contact)
             self._cancel(contact)
             self._silence(contact)
         return successions
@@ -134,6 +143,14 @@ class FacetContact(ToolContact):
             (doubled if same else standing).append(contact)
             before.append(contact)
         return standing, doubled
+
+    def _note_notches(self, rock, standing, doubled):
+        for one in standing:
+            beside = (other for other in doubled if other[1] in self.neighbours[one[1]] and self._inside(other)
+                      and other[0].geom.normal.dot(one[0].geom.normal) < FACE)
+            other = next(beside, None) if self._inside(one) else None
+            if other is not None:
+                self.notches.append((one[1], other[1], rock))
 
     def _inside(self, contact):
         body = O.bodies[self.tool.body_of[contact[1]]]
@@ -174,7 +191,7 @@ class FacetContact(ToolContact):
         phys.normalForce = phys.shearForce = phys.normalViscous = Vector3.Zero
 
     def _hand_over(self, old, new):
-        shear, pressing, energy = Vector3(old[0].phys.shearForce), spring_force(old), spring_energy(old)
+        shear = Vector3(old[0].phys.shearForce)
         size, normal = shear.norm(), new[0].geom.normal
         self._silence(old)
         self._wake(new)
@@ -183,36 +200,41 @@ class FacetContact(ToolContact):
             if old[3] != new[3]:
                 turned = -turned
             new[0].phys.shearForce = turned * (size / turned.norm())
-        gain = spring_energy(new) - energy
-        if self.standing is None:
-            self._cross(new, pressing, gain)
-        else:
-            self.born += gain
 
-    def _cross(self, contact, before, gain):
-        """Lead a particle over from a spring that pressed it with `before` (N) to that of `contact`, which holds more
-        energy by `gain` (J)."""
-        interaction, index, rock, tool_first = contact
-        if not self.motion.per_mass[rock]:
+    def _join(self, one, other):
+        """Add to the force that acts what the joined depth of two contacts has more."""
+        acting, depths = other if muted(one) else one, (depth_of(one[0]), depth_of(other[0]))
+        if min(depths) <= 0 or muted(acting) or acting[0].phys.normalForce.norm() < SILENT:
             return
-        velocity = Vector3(*self.tool.velocity_at(index, interaction, tool_first))
-        force = Vector3(*crossing_force(before=before, after=spring_force(contact), gain=gain, mass=1 / self.motion.per_mass[rock],
-                                        velocity=O.bodies[rock].state.vel - velocity, change=self.motion.of(rock), dt=O.dt))
+        _, index, rock, _ = acting
+        depth, (part, rest) = joined_depth(*depths)
+        force = (inwards(one) * (depth * part) + inwards(other) * (depth * rest) - inwards(acting) * depth_of(acting[0]))
+        force *= acting[0].phys.kn
         O.forces.addF(rock, force)
         self.impulse -= np.array(force) * O.dt
-        self.work_done += force.dot(velocity) * O.dt
+        self.work_done += force.dot(Vector3(*self.tool.velocity_at(index, acting[0], acting[3]))) * O.dt
+
+    def _joined_energy(self, pair, overlap):
+        """J that the joined depth of two contacts holds more than the one of them that counts."""
+        counting = pair[1] if muted(pair[0]) else pair[0]
+        depths = [overlap(contact[0]) for contact in pair]
+        if min(depths) <= 0 or muted(counting):
+            return 0.0
+        return 0.5 * counting[0].phys.kn * (joined_depth(*depths)[0]**2 - overlap(counting[0])**2)
 
     def elastic_energy(self):
-        return contact_energy((i for body in self.tool.ids for i in O.interactions.withBody(body)), self.tool.overlap)
+        alone = contact_energy((i for body in self.tool.ids for i in O.interactions.withBody(body)), self.tool.overlap)
+        return alone + math.fsum(self._joined_energy(pair, self.tool.overlap) for pair in self._pairs())
 
     def state(self):
-        return {**super().state(), "in_account": self.in_account, "born": self.born, "expecting": self.standing is not None,
-                "standing": np.array(sorted(self.standing or ()), int).reshape(-1, 2)}
+        return {**super().state(), "in_account": self.in_account, "born": self.born, "reshaped": self.reshaped,
+                "notches": np.array(self.notches, int).reshape(-1, 3)}
 
     def restore(self, state):
         super().restore(state)
         self.in_account, self.born = float(state["in_account"]), float(state["born"])
-        self.standing = set(map(tuple, state["standing"].tolist())) if state["expecting"] else None
+        self.reshaped = bool(state["reshaped"])
+        self.notches = [tuple(row) for row in state["notches"].tolist()]
 
 
 def muted(contact):
@@ -220,16 +242,19 @@ def muted(contact):
     return contact[0].phys.kn < SILENT
 
 
-def spring_force(contact):
-    """N, with which the normal spring of a contact presses the particle."""
-    interaction, _, _, tool_first = contact
-    force = interaction.geom.normal * (interaction.phys.kn * max(interaction.geom.penetrationDepth, 0.0))
-    return force if tool_first else -force
+def inwards(contact):
+    """Direction (-) in which a contact presses the particle."""
+    return contact[0].geom.normal if contact[3] else -contact[0].geom.normal
+
+
+def depth_of(interaction):
+    """m, as YADE found it in this step."""
+    return interaction.geom.penetrationDepth
 
 
 def spring_energy(contact):
     """J in the springs of a contact."""
-    phys, depth = contact[0].phys, max(contact[0].geom.penetrationDepth, 0.0)
+    phys, depth = contact[0].phys, max(depth_of(contact[0]), 0.0)
     return 0.5 * (phys.kn * depth**2 + phys.shearForce.squaredNorm() / phys.ks)
 
 
@@ -310,7 +335,7 @@ class FacetWear(WearEngine):
         if moved:
             if self.boundary.remeshed != remeshed:
                 self.contact.neighbours = self.boundary.neighbours()
-            self.contact.expect_births()
+            self.contact.shape_has_changed()
             self.tool.reshape()
             self.contact_energy_removed += stored - self.contact.elastic_energy()
 

@@ -66,15 +66,15 @@ def test_a_shallow_inner_edge_is_one_face():
     assert found["facets"] == 5 and found["ripple"] < 0.1
     # 1 mm uphill and 5 mm downhill; the angle of friction is that between the force and the normal of the face.
     friction, slope = math.atan(0.3), math.radians(2.5)
-    assert found["work"] == pytest.approx(2e4 * (1e-3 * math.tan(friction - slope) + 5e-3 * math.tan(friction + slope)), rel=1e-3)
+    assert found["work"] == pytest.approx(2e4 * (1e-3 * math.tan(friction - slope) + 5e-3 * math.tan(friction + slope)), rel=2e-3)
 
 
 def test_a_soft_contact_is_not_thrown_out_of_a_notch():
-    """Left to the leapfrog some crossings of the edge give the disc hundreds of times what its spring holds."""
+    """With the deeper face's force alone some crossings of the edge give the disc hundreds of times what its spring holds."""
     run = run_script(ROOT / "tests/scenes/scripts/notch.py")
     found = json.loads(run.stdout.splitlines()[-1])
-    assert found["crossings"] > 300
-    assert abs(found["gained"]) < found["in_the_spring"] and found["aside"] < 2e-3
+    assert found["crossings"] > 500
+    assert found["gained"] < found["in_the_spring"] and found["aside"] < 1e-3
 
 
 def test_worn_triangles_lose_archards_volume_and_the_next_contact_feels_it():
