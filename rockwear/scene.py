@@ -314,13 +314,18 @@ class FacetBodies(ToolBodies):
 
     def overlap(self, interaction):
         """Overlap (m) of a facet and a sphere as they lie."""
+        return self.meeting(interaction)[0]
+
+    def meeting(self, interaction):
+        """Overlap (m) of a facet and a sphere as they lie, and the direction (Vector3) from the facet to the sphere."""
         facet, sphere = O.bodies[interaction.id1], O.bodies[interaction.id2]
         if not hasattr(sphere.shape, "radius"):
             facet, sphere = sphere, facet
         state = facet.state
         place = state.ori.conjugate() * (sphere.state.pos - state.pos)
         nearest = nearest_on_triangle(np.array(place), np.array(facet.shape.vertices))
-        return sphere.shape.radius - float(np.linalg.norm(nearest - np.array(place)))
+        way = place - Vector3(*nearest)
+        return sphere.shape.radius - way.norm(), state.ori * way.normalized()
 
     def state(self):
         return {**super().state(), "positions": self.positions.copy(), "heights": self.heights.copy(),

@@ -71,8 +71,9 @@ class FacetContact(ToolContact):
         self.notches = []
         successions = [pair for rock, group in self.shared for pair in self._judge(rock, group)]
         self._sample_all()
-        for pair in self._pairs():
-            self._join(*pair)
+        acting = {new[1:3]: old for old, new in successions}
+        for one, other in self._pairs():
+            self._join(one, other, acting.get(one[1:3], one))
         for old, new in successions:
             self._hand_over(old, new)
         if self.reshaped:
@@ -88,7 +89,7 @@ class FacetContact(ToolContact):
         """J in the springs of contacts, or of those `known`, at the depths that YADE has found in this step."""
         real = [contact for contact in self.possible if contact[0].isReal and (known is None or contact[1:3] in known)]
         return (math.fsum(spring_energy(contact) for contact in real)
-                + math.fsum(self._joined_energy(pair, depth_of) for pair in self._pairs()))
+                + math.fsum(self._joined_energy(pair, as_found) for pair in self._pairs()))
 
     def _pairs(self):
         """The contacts of the notches: [(contact that counts, contact beside it)]."""
@@ -110,7 +111,7 @@ class FacetContact(ToolContact):
                 self._wake(contact)
             return []
         standing, doubled = self._ranked(rock, real)
-        self._note_notches(rock, standing, doubled)
+        self.notches += [(one[1], other[1], rock) for one in standing for other in self._beside(one, doubled)]
         ending = [contact for contact in doubled if not muted(contact)]
         successions = []
         for new in standing:
@@ -144,13 +145,19 @@ class FacetContact(ToolContact):
             before.append(contact)
         return standing, doubled
 
-    def _note_notches(self, rock, standing, doubled):
-        for one in standing:
-            beside = (other for other in doubled if other[1] in self.neighbours[one[1]] and self._inside(other)
-                      and other[0].geom.normal.dot(one[0].geom.normal) < FACE)
-            other = next(beside, None) if self._inside(one) else None
-            if other is not None:
-                self.notches.append((one[1], other[1], rock))
+    def _beside(self, one, doubled):
+        """[the one of the doubled contacts that is joined with contact `one`, or has acted for it], or none."""
+        near = [(parts, other[1], other) for other in doubled if other[1] in self.neighbours[one[1]]
+                for parts in [self._joined(one, other, as_found)[1]] if parts and (parts[0] < 1 or not muted(other))]
+        return [other for _, _, other in sorted(near, key=lambda row: row[:2])[:1]]
+
+    @staticmethod
+    def _joined(one, other, meeting):
+        """(joined depth, its parts) of two contacts; (0, None) where one is open. meeting: as_found or the like."""
+        (first, along), (second, aside) = meeting(one[0]), meeting(other[0])
+        if min(first, second) <= 0:
+            return 0.0, None
+        return joined_depth(first, second, abs(along.dot(aside)))
 
     def _inside(self, contact):
         body = O.bodies[self.tool.body_of[contact[1]]]
@@ -201,30 +208,28 @@ class FacetContact(ToolContact):
                 turned = -turned
             new[0].phys.shearForce = turned * (size / turned.norm())
 
-    def _join(self, one, other):
-        """Add to the force that acts what the joined depth of two contacts has more."""
-        acting, depths = other if muted(one) else one, (depth_of(one[0]), depth_of(other[0]))
-        if min(depths) <= 0 or muted(acting) or acting[0].phys.normalForce.norm() < SILENT:
+    def _join(self, one, other, acting):
+        """Put the force of the joined depth of two contacts in place of that of the contact that has acted in this step."""
+        depth, parts = self._joined(one, other, as_found)
+        if parts is None or muted(acting) or acting[0].phys.normalForce.norm() < SILENT:
             return
         _, index, rock, _ = acting
-        depth, (part, rest) = joined_depth(*depths)
-        force = (inwards(one) * (depth * part) + inwards(other) * (depth * rest) - inwards(acting) * depth_of(acting[0]))
-        force *= acting[0].phys.kn
+        force = (inwards(one) * (depth * parts[0]) + inwards(other) * (depth * parts[1])
+                 - inwards(acting) * acting[0].geom.penetrationDepth) * acting[0].phys.kn
         O.forces.addF(rock, force)
         self.impulse -= np.array(force) * O.dt
         self.work_done += force.dot(Vector3(*self.tool.velocity_at(index, acting[0], acting[3]))) * O.dt
 
-    def _joined_energy(self, pair, overlap):
+    def _joined_energy(self, pair, meeting):
         """J that the joined depth of two contacts holds more than the one of them that counts."""
-        counting = pair[1] if muted(pair[0]) else pair[0]
-        depths = [overlap(contact[0]) for contact in pair]
-        if min(depths) <= 0 or muted(counting):
+        counting, (depth, parts) = pair[1] if muted(pair[0]) else pair[0], self._joined(*pair, meeting)
+        if parts is None or muted(counting):
             return 0.0
-        return 0.5 * counting[0].phys.kn * (joined_depth(*depths)[0]**2 - overlap(counting[0])**2)
+        return 0.5 * counting[0].phys.kn * (depth**2 - meeting(counting[0])[0]**2)
 
     def elastic_energy(self):
         alone = contact_energy((i for body in self.tool.ids for i in O.interactions.withBody(body)), self.tool.overlap)
-        return alone + math.fsum(self._joined_energy(pair, self.tool.overlap) for pair in self._pairs())
+        return alone + math.fsum(self._joined_energy(pair, self.tool.meeting) for pair in self._pairs())
 
     def state(self):
         return {**super().state(), "in_account": self.in_account, "born": self.born, "reshaped": self.reshaped,
@@ -247,14 +252,14 @@ def inwards(contact):
     return contact[0].geom.normal if contact[3] else -contact[0].geom.normal
 
 
-def depth_of(interaction):
-    """m, as YADE found it in this step."""
-    return interaction.geom.penetrationDepth
+def as_found(interaction):
+    """Overlap (m) of a contact and its normal, as YADE found them in this step."""
+    return interaction.geom.penetrationDepth, interaction.geom.normal
 
 
 def spring_energy(contact):
     """J in the springs of a contact."""
-    phys, depth = contact[0].phys, max(depth_of(contact[0]), 0.0)
+    phys, depth = contact[0].phys, max(contact[0].geom.penetrationDepth, 0.0)
     return 0.5 * (phys.kn * depth**2 + phys.shearForce.squaredNorm() / phys.ks)
 
 

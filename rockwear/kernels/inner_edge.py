@@ -6,22 +6,22 @@ crosses every few steps, is thrown out of the notch. Both potentials added would
 of each face. So the larger depth is rounded where the two are nearly equal.
 """
 
-WIDTH = 0.1
-"""Depths a and b are nearly equal where |a - b| / (a + b) is less. Across an edge of 2 phi the contact is then no stiffer than
-kn sin^2(phi) / WIDTH, which is kn for 37 degrees."""
+ROUNDING = 3.0
+"""Width of the rounding over sin^2(phi). Across the edge a contact is so many times softer than along its normal, and an
+overlap of up to 1/ROUNDING of the radius leaves the rounding before its foot on one face comes to the edge."""
 
 
-def joined_depth(first, second):
+def joined_depth(first, second, cosine):
     """The larger of two depths (m), rounded, and its derivatives with respect to both: (m, (-, -)).
 
-        d = (a + b) / 2 (1 + psi),  psi = |t| for |t| >= w, else t^2 / 2w + w/2,  t = (a - b) / (a + b)
+        d = (a + b) / 2 (1 + psi),  psi = |t| for |t| >= w, else t^2 / 2w + w/2,  t = (a - b) / (a + b),  w = ROUNDING sin^2(phi)
 
-    It is smooth, symmetric, and doubles where both do; so the force kn d (dd/da n_a + dd/db n_b) has a potential. (Ours.)
-    Depths are greater than 0.
+    with 2 phi the angle between the normals of the contacts, whose cosine is given. It is smooth, symmetric, and doubles
+    where both do; so the force kn d (dd/da n_a + dd/db n_b) has a potential. (Ours.) Depths are greater than 0.
     """
     whole = first + second
-    t = (first - second) / whole
-    if abs(t) >= WIDTH:
-        return max(first, second), (float(t > 0), float(t < 0))
-    psi, slope = 0.5 * (t * t / WIDTH + WIDTH), t / WIDTH
+    t, width = (first - second) / whole, 0.5 * ROUNDING * (1 - cosine)
+    if abs(t) >= width:
+        return max(first, second), (float(first >= second), float(first < second))
+    psi, slope = 0.5 * (t * t / width + width), t / width
     return 0.5 * whole * (1 + psi), (0.5 * (1 + psi + slope * (1 - t)), 0.5 * (1 + psi - slope * (1 + t)))

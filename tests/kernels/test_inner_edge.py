@@ -4,35 +4,39 @@ import math
 import numpy as np
 import pytest
 
-from rockwear.kernels.inner_edge import WIDTH, joined_depth
+from rockwear.kernels.inner_edge import ROUNDING, joined_depth
+
+WIDTH = 0.1
+COSINE = 1 - 2 * WIDTH / ROUNDING
+"""Of the angle between two faces."""
 
 
 @pytest.mark.parametrize("first, second", [(1.0, 0.99), (0.8, 1.0), (1.0, 0.83), (0.5, 1.0), (1.0, 0.1), (2e-6, 2.1e-6)])
 def test_its_parts_are_its_derivatives(first, second):
-    depth, parts = joined_depth(first, second)
+    depth, parts = joined_depth(first, second, COSINE)
     step = 1e-6 * first
-    assert parts[0] == pytest.approx((joined_depth(first + step, second)[0] - joined_depth(first - step, second)[0]) / (2 * step), rel=1e-8, abs=1e-9)
-    assert parts[1] == pytest.approx((joined_depth(first, second + step)[0] - joined_depth(first, second - step)[0]) / (2 * step), rel=1e-8, abs=1e-9)
+    assert parts[0] == pytest.approx((joined_depth(first + step, second, COSINE)[0] - joined_depth(first - step, second, COSINE)[0]) / (2 * step), rel=1e-8, abs=1e-9)
+    assert parts[1] == pytest.approx((joined_depth(first, second + step, COSINE)[0] - joined_depth(first, second - step, COSINE)[0]) / (2 * step), rel=1e-8, abs=1e-9)
     # It doubles where both double (Euler), and does not depend on the order.
     assert parts[0] * first + parts[1] * second == pytest.approx(depth, rel=1e-12)
-    assert joined_depth(second, first) == (depth, parts[::-1])
+    assert joined_depth(second, first, COSINE) == (depth, parts[::-1])
 
 
 def test_it_is_the_larger_depth_but_for_nearly_equal_ones():
     edge = (1 - WIDTH) / (1 + WIDTH)
     for second in (0.01, 0.5, 0.999 * edge):
-        assert joined_depth(1.0, second) == (1.0, (1.0, 0.0))
+        assert joined_depth(1.0, second, COSINE) == (1.0, (1.0, 0.0))
     # Nothing jumps where it begins.
-    depth, parts = joined_depth(1.0, edge * (1 + 1e-9))
+    depth, parts = joined_depth(1.0, edge * (1 + 1e-9), COSINE)
     assert depth == pytest.approx(1.0, abs=1e-9) and parts == pytest.approx((1.0, 0.0), abs=1e-7)
-    assert joined_depth(1.0, 1.0)[0] == pytest.approx(1 + WIDTH / 2)
+    assert joined_depth(1.0, 1.0, COSINE)[0] == pytest.approx(1 + WIDTH / 2)
 
 
 def swings(slope, fraction, rate, law, steps=8000):
     """What a disc has gained that swings in a notch, over what its spring holds at rest, all damping counted.
 
     Faces rise by `slope`; steps of `fraction` of sqrt(m/kn); rate: of background damping, over sqrt(kn/m); law: a function
-    of both depths giving (depth, parts).
+    of both depths and the cosine between the faces giving (depth, parts).
     """
     radius, load, deep = 1.0, np.array([0.0, 0.08]), 0.08
     normals = np.array([[math.sin(slope), -math.cos(slope)], [-math.sin(slope), -math.cos(slope)]])
@@ -40,7 +44,7 @@ def swings(slope, fraction, rate, law, steps=8000):
     gained, spent = [], 0.0
     for _ in range(steps):
         depths = np.maximum(radius - normals @ place, 0.0)
-        depth, parts = law(*depths) if depths.min() > 0 else (depths.max(), 1.0 * (depths == depths.max()))
+        depth, parts = law(*depths, math.cos(2 * slope)) if depths.min() > 0 else (depths.max(), 1.0 * (depths == depths.max()))
         force = load + depth * np.asarray(parts) @ normals
         middle = velocity + 0.5 * force * fraction
         gained.append(0.5 * middle @ middle - load @ place + 0.5 * depth**2 + spent)
@@ -51,7 +55,7 @@ def swings(slope, fraction, rate, law, steps=8000):
     return (np.mean(gained[-100:]) - gained[0]) / (0.5 * deep**2)
 
 
-def deeper(first, second):
+def deeper(first, second, cosine):
     return max(first, second), (float(first >= second), float(first < second))
 
 

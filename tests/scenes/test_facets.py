@@ -70,11 +70,11 @@ def test_a_shallow_inner_edge_is_one_face():
 
 
 def test_a_soft_contact_is_not_thrown_out_of_a_notch():
-    """With the deeper face's force alone some crossings of the edge give the disc hundreds of times what its spring holds."""
+    """With the force of the deeper face alone some crossings of the edge throw it out with many times what its spring holds."""
     run = run_script(ROOT / "tests/scenes/scripts/notch.py")
     found = json.loads(run.stdout.splitlines()[-1])
     assert found["crossings"] > 500
-    assert found["gained"] < found["in_the_spring"] and found["aside"] < 1e-3
+    assert found["gained"] < 0.2 * found["in_the_spring"] and found["aside"] < 0.3e-3
 
 
 def test_worn_triangles_lose_archards_volume_and_the_next_contact_feels_it():

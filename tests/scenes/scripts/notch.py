@@ -39,7 +39,7 @@ bodies = scene.FacetBodies(tool, Straight(start=(0.0, 0.0), velocity=(0.0, 0.0))
 contact = FacetContact(tool=bodies, neighbours=tool.boundary.neighbours(),
                        motion=Foresight(masses=np.array([MASS]), inertias=np.ones(1), radii=np.array([RADIUS]), held=np.zeros(1, bool)))
 bodies.add(range(tool.count))
-O.dt = 0.8 * math.sqrt(MASS / KN)
+O.dt = 0.4 * math.sqrt(MASS / KN)
 engines.enlist([contact])
 O.engines = O.engines[:-1] + engines.runners({"tool_contact": 1}) + O.engines[-1:]
 contact.connect()
