@@ -151,17 +151,24 @@ class FacetContact(ToolContact):
                 for parts in [self._joined(one, other, as_found)[1]] if parts and (parts[0] < 1 or not muted(other))]
         return [other for _, _, other in sorted(near, key=lambda row: row[:2])[:1]]
 
-    @staticmethod
-    def _joined(one, other, meeting):
-        """(joined depth, its parts) of two contacts; (0, None) where one is open. meeting: as_found or the like."""
+    def _joined(self, one, other, meeting):
+        """(joined depth, its parts) of two contacts; (0, None) where one is open. meeting: as_found or the like.
+
+        Only those inside of both facets are joined: at a rim the angle would change with the place, and none of it is a
+        potential's.
+        """
         (first, along), (second, aside) = meeting(one[0]), meeting(other[0])
         if min(first, second) <= 0:
             return 0.0, None
-        return joined_depth(first, second, abs(along.dot(aside)))
+        inside = self._looks_along(one, along) and self._looks_along(other, aside)
+        return joined_depth(first, second, abs(along.dot(aside)) if inside else 1.0)
 
     def _inside(self, contact):
+        return self._looks_along(contact, contact[0].geom.normal)
+
+    def _looks_along(self, contact, direction):
         body = O.bodies[self.tool.body_of[contact[1]]]
-        return abs(contact[0].geom.normal.dot(body.state.ori * body.shape.normal)) > FACE
+        return abs(direction.dot(body.state.ori * body.shape.normal)) > FACE
 
     def from_behind(self):
         """Where (x, y, z in m) a particle that counts touches a facet inside its rim from within the tool, or None.
