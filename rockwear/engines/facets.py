@@ -6,6 +6,7 @@ from yade import Law2_ScGeom_FrictViscoPhys_CundallStrackVisco, O, Vector3
 
 from ..kernels.boundary import altitudes, area_vectors
 from ..kernels.inner_edge import joined_depth
+from ..kernels.remeshing import CROWDED
 from ..kernels.wear_laws import FRICTION, WORK
 from ..kernels.worn_boundary import STEPS, STRIDE, Folded, WornAway
 from . import contact_energy, law_functor
@@ -355,7 +356,10 @@ class FacetWear(WearEngine):
         return np.bincount(self.boundary.place, values, len(self.worn))
 
     def _check_speed(self, depth):
-        size = altitudes(self.boundary.vertices, self.boundary.facets)
+        # What falls on a facet that has crowded, those around it take over.
+        now = altitudes(self.boundary.vertices, self.boundary.facets)
+        size = np.maximum(now, CROWDED * self.boundary.size)
+        depth = depth * now / size
         worst = int(np.argmax(depth / size))
         if depth[worst] > STEPS * STRIDE * size[worst]:
             raise self._too_fast(f"a facet of {1e3 * size[worst]:.3g} mm would recede by {1e3 * depth[worst]:.3g} mm at once")
