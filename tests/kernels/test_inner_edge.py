@@ -15,8 +15,12 @@ COSINE = 1 - 2 * WIDTH / ROUNDING
 def test_its_parts_are_its_derivatives(first, second):
     depth, parts = joined_depth(first, second, COSINE)
     step = 1e-6 * first
-    assert parts[0] == pytest.approx((joined_depth(first + step, second, COSINE)[0] - joined_depth(first - step, second, COSINE)[0]) / (2 * step), rel=1e-8, abs=1e-9)
-    assert parts[1] == pytest.approx((joined_depth(first, second + step, COSINE)[0] - joined_depth(first, second - step, COSINE)[0]) / (2 * step), rel=1e-8, abs=1e-9)
+
+    def depth_at(aside, ahead):
+        return joined_depth(first + aside * step, second + ahead * step, COSINE)[0]
+
+    assert parts[0] == pytest.approx((depth_at(1, 0) - depth_at(-1, 0)) / (2 * step), rel=1e-8, abs=1e-9)
+    assert parts[1] == pytest.approx((depth_at(0, 1) - depth_at(0, -1)) / (2 * step), rel=1e-8, abs=1e-9)
     # It doubles where both double (Euler), and does not depend on the order.
     assert parts[0] * first + parts[1] * second == pytest.approx(depth, rel=1e-12)
     assert joined_depth(second, first, COSINE) == (depth, parts[::-1])
