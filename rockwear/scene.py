@@ -312,10 +312,6 @@ class FacetBodies(ToolBodies):
         # corners() puts a segment's base across the plane so that its triangle looks inwards.
         return -normal if self.tool.boundary.dimension == 2 else normal
 
-    def overlap(self, interaction):
-        """Overlap (m) of a facet and a sphere as they lie."""
-        return self.meeting(interaction)[0]
-
     def meeting(self, interaction):
         """Overlap (m) of a facet and a sphere as they lie, and the direction (Vector3) from the facet to the sphere."""
         facet, sphere = O.bodies[interaction.id1], O.bodies[interaction.id2]

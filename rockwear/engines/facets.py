@@ -88,9 +88,13 @@ class FacetContact(ToolContact):
 
     def _energy(self, known=None):
         """J in the springs of contacts, or of those `known`, at the depths that YADE has found in this step."""
-        real = [contact for contact in self.possible if contact[0].isReal and (known is None or contact[1:3] in known)]
-        return (math.fsum(spring_energy(contact) for contact in real)
-                + math.fsum(self._joined_energy(pair, as_found) for pair in self._pairs()))
+        return self._stored((contact[0] for contact in self.possible
+                             if contact[0].isReal and (known is None or contact[1:3] in known)), as_found)
+
+    def _stored(self, interactions, meeting):
+        """J in the springs of these contacts and in what is joined. meeting: as_found or the like."""
+        return (contact_energy(interactions, lambda interaction: meeting(interaction)[0])
+                + math.fsum(self._joined_energy(pair, meeting) for pair in self._pairs()))
 
     def _pairs(self):
         """The contacts of the notches: [(contact that counts, contact beside it)]."""
@@ -236,8 +240,7 @@ class FacetContact(ToolContact):
         return 0.5 * counting[0].phys.kn * (depth**2 - meeting(counting[0])[0]**2)
 
     def elastic_energy(self):
-        alone = contact_energy((i for body in self.tool.ids for i in O.interactions.withBody(body)), self.tool.overlap)
-        return alone + math.fsum(self._joined_energy(pair, self.tool.meeting) for pair in self._pairs())
+        return self._stored((i for body in self.tool.ids for i in O.interactions.withBody(body)), self.tool.meeting)
 
     def state(self):
         return {**super().state(), "in_account": self.in_account, "born": self.born, "reshaped": self.reshaped,
@@ -263,12 +266,6 @@ def inwards(contact):
 def as_found(interaction):
     """Overlap (m) of a contact and its normal, as YADE found them in this step."""
     return interaction.geom.penetrationDepth, interaction.geom.normal
-
-
-def spring_energy(contact):
-    """J in the springs of a contact."""
-    phys, depth = contact[0].phys, max(contact[0].geom.penetrationDepth, 0.0)
-    return 0.5 * (phys.kn * depth**2 + phys.shearForce.squaredNorm() / phys.ks)
 
 
 def yades_account():
