@@ -29,7 +29,7 @@ CASES = {
     "test tooth, 4e5": (TOOTH, dict(LONG, acceleration=4e5, cycles=14)),
     "test tooth, 8e5": (TOOTH, dict(LONG, acceleration=8e5, cycles=7)),
     "test tooth, 1.6e6": (TOOTH, dict(LONG, acceleration=1.6e6, cycles=3)),
-    "test tooth, 2e5, twice as deep": (TOOTH, dict(LONG, acceleration=2e5, depth_of_cut=0.016)),
+    "test tooth, 8e5, twice as deep": (TOOTH, dict(LONG, acceleration=8e5, cycles=7, depth_of_cut=0.016)),
     "test tooth, 7000": (TOOTH, dict(LONG, acceleration=7000)),
     "ripper, 7000": (RIPPER, dict(FEW_PICTURES)),
     "test tooth, 2.5e4": (TOOTH, dict(LONG, acceleration=2.5e4, cycles=8)),
