@@ -3,6 +3,7 @@ import difflib
 import os
 import sys
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, Callable
 
 from .kernels.checks import ParameterError, finite, require
@@ -121,30 +122,36 @@ def _arguments(arguments, known):
     return given
 
 
-def _batch_line():
-    """(line number, {column: text}) of the yade-batch row that this run is for; None outside a batch."""
+def _batch_table():
+    """(number of the line that this run is for, {number: {column: text}}) of yade-batch; None outside a batch."""
     place = os.environ.get("YADE_BATCH")
     if not place:
         return None
     from yade.utils import TableParamReader
     table, line = place.rsplit(":", 1)
-    return int(line), TableParamReader(table).paramDict()[int(line)]
+    # YADE's reader takes the last character of every line for its break.
+    require(Path(table).read_bytes().endswith(b"\n"), "table", table, "closed by a line break")
+    return int(line), TableParamReader(table).paramDict()
 
 
 def _table_row():
     """{column: text} of the row's parameters; nothing outside a batch."""
-    _, row = _batch_line() or (0, {})
-    return {name: value for name, value in row.items() if not name.startswith("!") and name != "description"}
+    line, rows = _batch_table() or (0, {0: {}})
+    return {name: value for name, value in rows[line].items() if not name.startswith("!") and name != "description"}
 
 
 def batch_row():
-    """A folder's name for the row that yade-batch runs, or None outside a batch."""
-    found = _batch_line()
+    """A folder's name for the row that yade-batch runs, with its line where rows share a name; None outside a batch."""
+    found = _batch_table()
     if found is None:
         return None
-    line, row = found
-    name = row.get("description") or f"row {line}"
-    return "".join(c if c.isalnum() or c in "-_.=," else "_" for c in name)
+    line, rows = found
+    names = {number: _folder_name(row.get("description") or f"row {number}") for number, row in rows.items()}
+    return names[line] if list(names.values()).count(names[line]) == 1 else f"{names[line]}_line_{line}"
+
+
+def _folder_name(words):
+    return "".join(c if c.isalnum() or c in "-_.=," else "_" for c in words)
 
 
 def describe(parameters, file=sys.stdout):

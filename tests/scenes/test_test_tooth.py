@@ -1,5 +1,6 @@
 """The main scene in miniature: it runs, its books close, it resumes to the last bit, and it pays only for what it uses."""
 import json
+import os
 import signal
 import subprocess
 
@@ -167,16 +168,24 @@ def test_both_removal_rules_report_what_they_differ_by(tmp_path):
 
 def test_a_table_of_yade_batch_gives_a_folder_a_row(tmp_path):
     table = tmp_path / "table.txt"
-    values = {**SMALL, **TINY}
-    table.write_text(" ".join(["description", *values, "Rn", "out"]) + "\n"
-                     + " ".join(["weak", *map(str, values.values()), "0.1e6", str(tmp_path / "sweep")]) + "\n"
-                     + " ".join(["strong", *map(str, values.values()), "0.2e6", str(tmp_path / "sweep")]) + "\n", encoding="utf-8")
+    values = {**SMALL, **TINY, "out": tmp_path / "sweep"}
+    rows = [("weak", 0.1e6), ("strong", 0.2e6), ("strong", 0.3e6)]
+    lines = [["description", "Rn", *values], *([name, Rn, *values.values()] for name, Rn in rows)]
+    table.write_text("".join(" ".join(map(str, line)) + "\n" for line in lines), encoding="utf-8")
     done = subprocess.run(["yade-batch", "-j2", "--job-threads=1", f"--log={tmp_path}/@.log", str(table),
                            str(ROOT / "yade_scripts/test_tooth.py")],
-                          cwd=tmp_path, capture_output=True, encoding="utf-8", stdin=subprocess.DEVNULL, timeout=120)
-    found = {name: json.loads((tmp_path / "sweep" / name / "summary.json").read_text(encoding="utf-8"))["parameters"]["Rn"]
-             for name in ("weak", "strong")}
-    assert found == {"weak": 0.1e6, "strong": 0.2e6}, done.stdout + done.stderr
+                          cwd=tmp_path, capture_output=True, encoding="utf-8", stdin=subprocess.DEVNULL, timeout=180)
+    found = {path.parent.name: json.loads(path.read_text(encoding="utf-8"))["parameters"]["Rn"]
+             for path in (tmp_path / "sweep").glob("*/summary.json")}
+    assert found == {"weak": 0.1e6, "strong_line_3": 0.2e6, "strong_line_4": 0.3e6}, done.stdout + done.stderr
+
+
+def test_a_table_without_its_last_line_break_is_refused(tmp_path):
+    """YADE would read 0.15 as 0.1."""
+    table = tmp_path / "table.txt"
+    table.write_text("out porosity\nhere 0.15", encoding="utf-8")
+    run = run_script(ROOT / "yade_scripts/test_tooth.py", env={**os.environ, "YADE_BATCH": f"{table}:2"}, cwd=tmp_path)
+    assert (run.code, run.stderr.splitlines()[-1]) == (2, f"error: table = {table}: must be closed by a line break")
 
 
 def test_every_cycle_starts_on_the_rock_that_the_start_up_left(tmp_path):
