@@ -14,6 +14,7 @@ import numpy as np
 
 from calibration import sharp_and_worn
 from calibration.runs import RunFailed, Runs
+from rockwear.kernels.outline import contour
 from rockwear.kernels.wear_statistics import PLACE, difference
 from rockwear.report import page, plots
 from rockwear.report.folder import read_history
@@ -52,6 +53,12 @@ def profile(run):
     return np.sum(list(read_history(run.path / "wear_profile.csv")[0].values()), axis=1)
 
 
+def places_from_tip(run):
+    """(b,) m along the first outline from the tip to the middle of each place of the wear profile."""
+    _, arc = contour(run.model["outline"], PLACE / 10)
+    return arc[0] + PLACE * (np.arange(len(profile(run))) + 0.5)
+
+
 def acceleration(runs):
     """Wear of the same work done at several accelerations: distributions, and how far each is from the slowest one.
 
@@ -63,11 +70,11 @@ def acceleration(runs):
     worn = [profile(run) for run in runs.values()]
     found = [100 * difference(share, worn[0]) for share in worn[1:]]
     figure, (along, against) = plots.canvas(12, 4.4, 1, 2)
+    place = plots.MM * places_from_tip(next(iter(runs.values())))
     for name, share in zip(runs, worn):
-        along.step(plots.MM * PLACE * np.arange(len(share)), 100 * share / share.sum(), where="mid",
-                   label=f"{name}: {1e6 * share.sum():.3g} mm² worn")
-    reached = plots.MM * PLACE * np.flatnonzero(np.sum([share / share.sum() for share in worn], axis=0) > 1e-3)
-    along.set(xlabel="way along the new outline / mm", ylabel="% of the worn volume",
+        along.step(place, 100 * share / share.sum(), where="mid", label=f"{name}: {1e6 * share.sum():.3g} mm² worn")
+    reached = place[np.sum([share / share.sum() for share in worn], axis=0) > 1e-3]
+    along.set(xlabel="arc length from the tip along the new outline / mm", ylabel="% of the worn volume",
               xlim=(reached.min() - 5, reached.max() + 5))
     along.legend(fontsize=8)
     against.semilogx(factors[1:], found, "o", color="#b5651d", label="difference from the slowest run")
@@ -115,7 +122,7 @@ def wear_table(runs):
 
 
 def main(folder, *names):
-    """Run what is missing of the named cases, all by default, and write the page."""
+    """Run what is missing of the named cases, all by default, and write the page. -> exit code, 1 where a run failed."""
     unknown = set(names) - set(CASES)
     if unknown:
         sys.exit(f"campaign_wear: no such case: {', '.join(sorted(unknown))}; there are: {'; '.join(CASES)}")
@@ -123,7 +130,12 @@ def main(folder, *names):
     with Runs(folder, keep=True) as runs:
         waiting = {name: runs.start(name.replace(", ", "-").replace(" ", "_"), script, **{**COARSE, **values})
                    for name, (script, values) in cases.items()}
-        found = {name: future.result() for name, future in waiting.items()}
+        failed = {name: str(future.exception()) for name, future in waiting.items() if future.exception()}
+        found = {name: future.result() for name, future in waiting.items() if name not in failed}
+    for words in failed.values():
+        print(f"campaign_wear: {words}", file=sys.stderr)
+    if not found:
+        return 1
     with matplotlib.rc_context(plots.STYLE):
         mass_loss(found).savefig(folder / "mass_loss.png")
         sections = [page.Section("How fast the tools wear", "Left as simulated, right over the time that the accelerated wear "
@@ -145,8 +157,10 @@ def main(folder, *names):
         sections.append(page.Section("Sharp and worn", f"The same rock cut by the tool of {WORN}, as it was new and as it wore; "
                                      "see sharp_and_worn/report.html.",
                                      [page.image(folder / "sharp_and_worn/sharp_and_worn.png")]))
-    (folder / "report.html").write_text(page.document("wear", f"{len(found)} runs", sections), encoding="utf-8")
+    sections += [page.Section(name, f"FAILED: {words}", [" "]) for name, words in failed.items()]
+    (folder / "report.html").write_text(page.document("wear", f"{len(found)} runs, {len(failed)} failed", sections), encoding="utf-8")
     print(folder / "report.html")
+    return 1 if failed else 0
 
 
 if __name__ == "__main__":
@@ -154,6 +168,6 @@ if __name__ == "__main__":
     if len(sys.argv) < 2:
         sys.exit(__doc__)
     try:
-        main(*sys.argv[1:])
+        sys.exit(main(*sys.argv[1:]))
     except RunFailed as error:
         sys.exit(f"campaign_wear: {error}")

@@ -3,6 +3,7 @@ import subprocess
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+from rockwear.checkpoint import digest
 from rockwear.report.folder import RunFolder
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -15,7 +16,7 @@ class RunFailed(RuntimeError):
 class Runs:
     """Runs in subfolders of `folder`, `at_once` at a time.
 
-    With `keep`, finished ones of the same values stay as they are. Use it as a context: an exception within
+    With `keep`, those that ended well with the same values, and the same files, stay as they are. Use it as a context: an exception within
     lets the runs under way end, and starts no others.
     """
 
@@ -46,17 +47,21 @@ class Runs:
                               capture_output=True, encoding="utf-8", stdin=subprocess.DEVNULL)
         if done.returncode:
             said = done.stderr.strip().splitlines() or ["nothing said"]
-            raise RunFailed(f"{folder.name} ended with {done.returncode}: {said[-1]}")
+            errors = [line for line in said if line.startswith("error: ")]
+            raise RunFailed(f"{folder.name} ended with {done.returncode}: {(errors or said)[-1]}")
         return RunFolder(folder)
 
 
 def finished(folder, values):
-    """True for a folder with the summary of a run that had these values."""
+    """True for a folder with the summary of a run that ended well, with these values and these files."""
     try:
-        parameters = RunFolder(folder).parameters
-    except (OSError, ValueError):
+        summary = RunFolder(folder).summary
+        parameters = summary["parameters"]
+        same_files = all(digest(Path(parameters[name])) == found for name, found in summary["files"].items())
+    except (OSError, ValueError, KeyError):
         return False
-    return all(name in parameters and _same(parameters[name], value) for name, value in values.items())
+    return summary["exit_code"] == 0 and same_files and all(
+        name in parameters and _same(parameters[name], value) for name, value in values.items())
 
 
 def _same(stored, value):

@@ -14,8 +14,9 @@ from pathlib import Path
 import matplotlib
 import numpy as np
 
-from calibration.runs import Runs
+from calibration.runs import RunFailed, Runs
 from rockwear.kernels import cutting_theory
+from rockwear.kernels.checks import ParameterError, require
 from rockwear.report import cutting, page, plots, shapes
 from rockwear.report.folder import RunFolder
 
@@ -49,10 +50,11 @@ def outline(run, shot):
 
 def effective_rake(polygon, depth):
     """Angle (rad) from the vertical of the line from the tip to where the front leaves the rock; negative when blunt."""
-    x, y = polygon.T
-    tip = polygon[np.argmin(y)]
-    front = x[np.abs(y - depth) < 0.15 * depth].max()
-    return math.atan2(tip[0] - front, depth)
+    following = np.roll(polygon, -1, axis=0)
+    through = (polygon[:, 1] < depth) != (following[:, 1] < depth)
+    (x, y), (x_next, y_next) = polygon[through].T, following[through].T
+    front = np.max(x + (depth - y) / (y_next - y) * (x_next - x))
+    return math.atan2(polygon[np.argmin(polygon[:, 1]), 0] - front, depth)
 
 
 def chip_size(run):
@@ -108,23 +110,23 @@ def figure(teeth, rows):
         axes.plot(lost, values, "o", color="#c8a15a", markersize=4, label="one packing")
         middle = [np.nanmean(values[lost == x]) for x in np.unique(lost)]
         axes.plot(np.unique(lost), middle, color="#444444", label="mean")
-        highest = np.nanmax(values)
+        axes.set(title=label, xlabel="mass lost / %", ylabel=shown, ylim=(0, 1.1 * np.nanmax(values)))
         if name == "peak_cutting_force":
-            # The theories are of the force at which a chip breaks off.
-            for theory_name, style in (("Evans", ":"), ("Nishimatsu", "--")):
+            # The theories are of the force at which a chip breaks off, and far from it for a blunt tool.
+            for theory_name, style in (("Evans", "s:"), ("Nishimatsu", "^--")):
                 axes.plot([100 * tooth["lost"] for tooth in teeth], [factor * tooth[theory_name] for tooth in teeth], style,
-                          color="#2c6e91", label=theory_name)
+                          markersize=4, color="#2c6e91", label=theory_name)
+            axes.set(yscale="log", ylim=(0.5 * np.nanmin(values), None))
             axes.legend(fontsize=8)
-            highest *= 1.6
-        axes.set(title=label, xlabel="mass lost / %", ylabel=shown, ylim=(0, 1.1 * highest))
     return drawn
 
 
 def main(worn_run, folder, seeds=SEEDS):
     """Run what is missing, and write the page."""
-    folder = Path(folder)
+    folder, run = Path(folder), RunFolder(worn_run)
+    require({"tool_volumes", "rock_radii"} <= set(run.model) and len(run.times), "WORN_RUN", str(worn_run),
+            "the folder of a cut in the plane with a tool of particles")
     (folder / "outlines").mkdir(parents=True, exist_ok=True)
-    run = RunFolder(worn_run)
     common = {name: run.parameters[name] for name in ROCK_OF_THE_CUT if name in run.parameters}
     teeth = []
     for number, (lost, shot) in enumerate(stages(run)):
@@ -164,12 +166,15 @@ def write_page(folder, teeth, rows):
     (folder / "report.html").write_text(page.document("sharp and worn", f"{len(rows)} cuts", [page.Section(
         "What wear does to the cut", "The same specimens cut at the same depth by the tooth as it was new and as it wore; "
         "± is the scatter of packings. The theories are of the force at which a chip breaks off, beside the peak, and take the "
-        "rake of the line from the lowest point to where the front leaves the rock, and the laboratory's strengths; beyond "
-        "the frame they leave what they were made for.", [page.image(path), page.table(table, header)])]), encoding="utf-8")
+        "rake of the line from the lowest point to where the front leaves the rock, and the laboratory's strengths.", [page.image(path), page.table(table, header)])]), encoding="utf-8")
 
 
 if __name__ == "__main__":
     matplotlib.use("Agg")
     if len(sys.argv) < 3:
         sys.exit(__doc__)
-    main(sys.argv[1], sys.argv[2], tuple(map(int, sys.argv[3:])) or SEEDS)
+    try:
+        main(sys.argv[1], sys.argv[2], tuple(map(int, sys.argv[3:])) or SEEDS)
+    except (OSError, ParameterError, RunFailed) as error:
+        print(f"error: {error}", file=sys.stderr)
+        sys.exit(1 if isinstance(error, RunFailed) else 2)

@@ -135,7 +135,7 @@ class Run:
         else:
             for old in OURS:
                 shutil.rmtree(self.folder / old, ignore_errors=True)
-            for old in ("summary.json", "history.csv", "cracks.csv", "turns.csv", "tool.stl", "report.html"):
+            for old in ("summary.json", "history.csv", "cracks.csv", "turns.csv", "wear_profile.csv", "tool.stl", "report.html"):
                 (self.folder / old).unlink(missing_ok=True)
             (self.folder / "snapshots").mkdir()
             np.savez_compressed(self.folder / "model.npz", **self.scene.model())
@@ -169,7 +169,7 @@ class Run:
                 self._snapshot()
                 self._checkpoint()
             warnings = self.scene.warnings()
-            self._write_summary(ended, warnings)
+            self._write_summary(ended, code, warnings)
             self.scene.write_shape(self.folder)
             for line in warnings:
                 print(f"warning: {line}", file=sys.stderr)
@@ -241,7 +241,7 @@ class Run:
                         write_scenes=lambda directory: self.scene.save(directory, self.folder))
         self.checkpoint_time += time.time() - begin
 
-    def _write_summary(self, ended, warnings):
+    def _write_summary(self, ended, code, warnings):
         scene = self.scene
         scene.recorder.write(self.folder / "history.csv")
         for name, (header, rows) in scene.tables().items():
@@ -249,7 +249,8 @@ class Run:
         ours = {engine.name: {"seconds": engine.wall_time, "visits": engine.visits} for engine in scene.live}
         python = sum(engine.wall_time for engine in scene.live)
         summary = {
-            "scene": self.name, "ended": ended, "warnings": warnings, "parameters": self.values, "seed": self.values.get("seed"),
+            "scene": self.name, "ended": ended, "exit_code": code, "warnings": warnings, "parameters": self.values,
+            "files": self.identity["files"], "seed": self.values.get("seed"),
             "versions": {"rockwear": __version__, "yade": yade.config.version, "python": platform.python_version(),
                          "numpy": np.__version__},
             "results": {name: {"value": _plain(value), "unit": unit} for name, (value, unit) in scene.results().items()},

@@ -1,15 +1,18 @@
 """make campaign-wear in miniature: its page, its figures' numbers, the worn shapes that cut fresh rock, runs kept."""
 import csv
+import subprocess
+import sys
 from functools import partial
 
 import numpy as np
 import pytest
 
 from calibration import campaign_wear, sharp_and_worn
+from calibration.runs import finished
 from rockwear.kernels.outline import area
 from rockwear.report.folder import RunFolder
 
-from .conftest import SMALL
+from .conftest import ROOT, SMALL
 
 WEARING = dict(SMALL, start_up=8e-4, cycles=2, heat="false")
 SMALL_ROCK = {name: SMALL[name] for name in ("width", "height", "radius_min", "radius_max")}
@@ -74,6 +77,40 @@ def test_finished_runs_stay(campaign):
     assert len(written) == len(CASES) + 2 * len(SEEDS)
     run()
     assert {path: path.stat().st_mtime_ns for path in folder.glob("**/summary.json")} == written
+
+
+def test_a_cut_with_another_shape_is_cut_again(campaign):
+    folder = campaign[0] / "sharp_and_worn"
+    outline, cut = folder / "outlines/tooth_1.csv", folder / f"tooth_1-{SEEDS[0]}"
+    found, first = finished(cut, {"outline": outline}), outline.read_text(encoding="utf-8")
+    try:
+        outline.write_text(first.replace("\n", "\n ", 2), encoding="utf-8")
+        assert found and not finished(cut, {"outline": outline})
+    finally:
+        outline.write_text(first, encoding="utf-8")
+
+
+def test_a_run_that_failed_shows_its_error_and_is_not_kept(tmp_path, monkeypatch, capsys):
+    """Its warnings come last, and it leaves a summary as well."""
+    values = {**SMALL, "tool": "segments", "heat": "false", "acceleration": 1e7}
+    monkeypatch.setattr(campaign_wear, "CASES", {"too fast": (campaign_wear.TOOTH, values)})
+    assert campaign_wear.main(tmp_path) == 1
+    assert "too_fast ended with 1: error: the tool's shape cannot follow its wear" in capsys.readouterr().err
+    assert (tmp_path / "too_fast/summary.json").exists() and not finished(tmp_path / "too_fast", values)
+
+
+@pytest.mark.parametrize("rake", [-30, 0, 20])
+def test_the_rake_of_a_straight_front_is_its_own(rake):
+    slope = np.tan(np.radians(rake))
+    tooth = np.array([[0.0, 0.0], [-0.03 * slope, 0.03], [-0.05, 0.03], [-0.05, 0.01]])
+    assert np.degrees(sharp_and_worn.effective_rake(tooth, 0.015)) == pytest.approx(rake)
+
+
+def test_a_folder_that_is_no_run_ends_in_one_line(tmp_path):
+    done = subprocess.run([sys.executable, "-m", "calibration.sharp_and_worn", tmp_path / "nowhere", tmp_path / "out"], cwd=ROOT,
+                          capture_output=True, encoding="utf-8")
+    assert done.returncode == 2 and done.stderr.startswith("error: ") and done.stderr.count("\n") == 1
+    assert not (tmp_path / "out").exists()
 
 
 def test_unknown_cases_are_named(tmp_path):
