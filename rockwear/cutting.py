@@ -658,12 +658,15 @@ class Cutting(scene.Scene):
 
     def _distrust(self):
         v, found = self.v, {name: value for name, (value, _) in self._trust().items()}
-        if not found["trusted_acceleration"] < v.acceleration:
+        error, events, trusted = (found[name] for name in ("wear_distribution_error", "contact_events_per_particle",
+                                                           "trusted_acceleration"))
+        if math.isnan(events) or (math.isfinite(error) and trusted >= v.acceleration):
             return []
-        return [f"where the tool wears is known to {100 * found['wear_distribution_error']:.2g} % only, and {self.piece} goes in "
-                f"{found['contact_events_per_particle']:.2g} contact events: to trust the distribution of wear to "
-                f"{100 * v.wear_tolerance:g} %, accelerate it at most {found['trusted_acceleration']:.2g} times instead of "
-                f"{v.acceleration:g}, and run that much longer"]
+        known = f"is known to {100 * error:.2g} % only" if math.isfinite(error) else "cannot be told from a run as short as this"
+        advice = "run longer" if trusted >= v.acceleration else (
+            f"accelerate it at most {trusted:.2g} times instead of {v.acceleration:g}, and run that much longer")
+        return [f"where the tool wears {known}, and {self.piece} goes in {events:.2g} contact events: to trust the distribution "
+                f"of wear to {100 * v.wear_tolerance:g} %, {advice}"]
 
     def tables(self):
         if not self.profile:

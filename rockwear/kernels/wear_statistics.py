@@ -76,11 +76,11 @@ def trusted_acceleration(*, acceleration, error, events, tolerance):
     """Largest factor at which the same worn volume would have kept both of R's rules.
 
     A factor f' wears the same volume in f / f' of the time: the error of the distribution becomes error sqrt(f' / f),
-    and a particle goes in events f / f' contacts. -> f min((tolerance / error)^2, events / ENOUGH_EVENTS); nan where
-    the record says nothing.
+    and a particle goes in events f / f' contacts. -> f min((tolerance / error)^2, events / ENOUGH_EVENTS), of what is
+    known of the two; nan where the record says nothing.
     """
     with np.errstate(divide="ignore"):
-        return acceleration * float(np.minimum((tolerance / np.float64(error)) ** 2, events / ENOUGH_EVENTS))
+        return acceleration * float(np.fmin((tolerance / np.float64(error)) ** 2, events / ENOUGH_EVENTS))
 
 
 def difference(first, second):

@@ -399,17 +399,18 @@ def worn_outlines(run, shown):
 
 def trusted(run):
     """The section on how far the acceleration can be trusted, in a list; empty where nothing has judged it."""
-    if not math.isfinite(run.result("wear_distribution_error")):
+    if not math.isfinite(run.result("contact_events_per_particle")):
         return []
-    return [Section("How far the acceleration can be trusted", trust_line(run), [save(run, "trust", trust(run))])]
+    return [Section("How far the acceleration can be trusted", trust_line(run), [" ", save(run, "trust", trust(run))])]
 
 
 def trust_line(run):
     """What R's rules say of this run."""
     piece = "a layer as deep as its facet" if "tool_facets" in run.model else "a particle"
+    error = run.result("wear_distribution_error")
+    known = f"is known to {percent(error, 1.0)}" if math.isfinite(error) else "cannot be told: the run is too short"
     return (f"Wear is accelerated {quantity(run.parameter('acceleration', 0.0), '-')} times. Sampled in "
-            f"{quantity(run.result('simulated_time'), 's')}, its distribution along the tool is known to "
-            f"{percent(run.result('wear_distribution_error'), 1.0)}, and {piece} goes in "
+            f"{quantity(run.result('simulated_time'), 's')}, its distribution along the tool {known}, and {piece} goes in "
             f"{number(run.result('contact_events_per_particle'))} contact events. For an error of "
             f"{percent(run.parameter('wear_tolerance', math.nan), 1.0)} and {wear_statistics.ENOUGH_EVENTS} events, "
             f"accelerate at most {number(run.result('trusted_acceleration'))} times, and run as much longer.")

@@ -143,6 +143,9 @@ def test_a_tool_worn_away_ends_cleanly(tmp_path):
     assert run.code == 0, run.stderr
     assert "worn away" in run.summary["ended"] and "worn away" in run.stdout
     assert value(run, "mass_lost") > 0.9 and (run.out / "checkpoint/current.json").exists()
+    # It was worn too fast to tell where, and says so.
+    assert value(run, "trusted_acceleration") < 1e-3 * 1e9 and "cannot be told from a run as short as this" in run.stderr
+    assert "How far the acceleration can be trusted" in (run.out / "report.html").read_text(encoding="utf-8")
     assert abs(run.summary["audits"]["mass"]["unexplained"]) < 1e-12 * run.summary["audits"]["mass"]["initial"] * 1e6
 
 
