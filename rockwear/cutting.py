@@ -341,7 +341,7 @@ class Cutting(scene.Scene):
 
     def _profile(self):
         """The engine that R's rules are judged by, None where nothing is to wear."""
-        if not self.v.acceleration:
+        if not self.wear_law.wears:
             return None
         return WearProfile(wear=self.wear, place=places(self.outline, self.tool.positions[:, :2]))
 

@@ -37,7 +37,7 @@ TOUCHING = 4
 """Tool particles that are taken to press one rock particle at once, in the time step."""
 
 SHARED = """porosity seed kn kt Rn Rt law H mu tool_kn tool_kt tool_mu contact_damping tool_density outline rake clearance
-    tip_radius tooth_height tooth_width velocity depth_of_cut approach background_damping hardness wear_coefficient
+    tip_radius tooth_height tooth_width velocity depth_of_cut approach background_damping wear_coefficient
     wear_law wear_exponent wear_modes acceleration removal time_step_fraction time_step sampling_period rock_sampling_period
     wear_period wear_tolerance damping_period record_period rock_density width height""".split()
 """Parameters that are those of the cut in the plane."""
@@ -45,7 +45,7 @@ SHARED = """porosity seed kn kt Rn Rt law H mu tool_kn tool_kt tool_mu contact_d
 OURS = dict(
     width=0.62, height=0.22, porosity=0.36, kn=1e6, kt=1e6, Rn=500.0, Rt=5000.0, mu=0.5, tool_kn=1e6, tool_kt=1e6,
     tool_mu=0.1, contact_damping=0.0, tooth_height=0.14, tooth_width=0.0758, rake=30.0, clearance=20.0, tip_radius=4e-3,
-    velocity=0.04, depth_of_cut=0.03, approach=2e-3, background_damping=20.0, hardness=1.0, wear_coefficient=0.0,
+    velocity=0.04, depth_of_cut=0.03, approach=2e-3, background_damping=20.0, wear_coefficient=0.0,
     acceleration=1.0, removal="none", damping_period=100, rock_sampling_period=8, wear_period=10, record_period=2e-3)
 """Their defaults in space: numbers of M 13.2, and sizes of ours where M shows them in a figure."""
 
@@ -57,6 +57,7 @@ PARAMETERS = [p for p in cutting.parameters(**OURS) if p.name in SHARED] + [
     Parameter("gravity", GRAVITY, "m/s2", number(0), "downwards", "M 13.1"),
     Parameter("start", 0.0, "m", number(0), "place of the tip when it is lowered, from the left end", "ours"),
     Parameter("lowering_velocity", 0.08, "m/s", above_zero, "of the tooth on its way down", "ours: M gives none"),
+    Parameter("hardness", 1.0, "Pa", above_zero, "of the tool, constant; 1: wear_coefficient is k / H", "M 8 took 1; steel has 5e9"),
     Parameter("cut_time", 1.0, "s", above_zero, "time of the horizontal cut", "M 13.3"),
     Parameter("coarsening", 1.5, "", number(1, 8), "factor on the radii of rock and tool; stiffnesses grow with it and "
               "strengths with its square, so that the rock keeps modulus and strength"),
@@ -193,7 +194,7 @@ class Cutting3D(Cutting):
         motion = Foresight(masses=rock.masses, inertias=rock.inertias, radii=rock.radii, held=rock.supported,
                            gravity=self.gravity)
         self._make_tool_engines(motion)
-        self.profile = self._profile() if v.wear_coefficient else None
+        self.profile = self._profile()
         self.damping = BackgroundDamping(rate=self._damping_rate(), bodies=range(rock.count))
         self.recorder = Recorder([self._log, self.wear.log, self.bonds.log])
         pull = float(rock.masses.sum()) * v.gravity * v.radius
@@ -357,7 +358,7 @@ class TriangleCutting3D(Cutting3D, FacetCutting):
         check_size("facet", self.v.facet, math.sqrt(2 * surface / MOST_FACETS))
 
     def write_shape(self, folder):
-        if self.v.wear_coefficient and self.v.reshape:
+        if self.wear_law.wears and self.v.reshape:
             write_stl(folder / "tool.stl", self.tool.boundary.vertices, self.tool.boundary.facets)
 
     def _tool_model(self):

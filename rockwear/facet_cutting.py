@@ -35,7 +35,7 @@ def parameters(**defaults):
     """Those of the cut, without heat by default, and those of the segments."""
     own = {p.name for p in OF_FACETS}
     common = cutting_parameters(**{"heat": False, **{k: v for k, v in defaults.items() if k not in own}})
-    return common + [replace(p, default=defaults.get(p.name, p.default)) for p in OF_FACETS]
+    return [p for p in common if p.name != "removal"] + [replace(p, default=defaults.get(p.name, p.default)) for p in OF_FACETS]
 
 
 def check_sampling(values):
@@ -51,6 +51,8 @@ class FacetCutting(Cutting):
 
     def __init__(self, values):
         require(not values["heat"], "heat", "true", "false: heat is for a tool of particles")
+        removal = values.get("removal", "volume")
+        require(removal == "volume", "removal", removal, "volume for a tool of facets; --reshape false keeps its shape")
         check_sampling(values)
         super().__init__(values)
 
@@ -67,7 +69,7 @@ class FacetCutting(Cutting):
                               reshape=v.reshape, acceleration=v.acceleration, volume_unit=self.volume_unit)
 
     def _profile(self):
-        return super()._profile() if self.v.wear_coefficient and self.v.reshape else None
+        return super()._profile() if self.v.reshape else None
 
     def _put_tool(self):
         self.bodies.add(range(self.tool.count))

@@ -15,4 +15,5 @@ sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(sys.argv[0]))
 from rockwear import run  # noqa: E402
 from rockwear.cutting3d import OF_TRIANGLES, TriangleCutting3D, parameters  # noqa: E402
 
-run.main("cutting_3d_triangles", parameters(*OF_TRIANGLES, lowering_velocity=0.4, cut_time=1.5), TriangleCutting3D)
+run.main("cutting_3d_triangles", parameters(
+    *OF_TRIANGLES, without={"removal"}, lowering_velocity=0.4, cut_time=1.5), TriangleCutting3D)

@@ -15,5 +15,5 @@ from rockwear import run  # noqa: E402
 from rockwear.cutting3d import LOOSE, OF_BONDS, OF_TRIANGLES, LooseCutting3D, parameters  # noqa: E402
 
 run.main("granular_3d", parameters(
-    *OF_TRIANGLES, *LOOSE, without=OF_BONDS, porosity=0.42, mu=0.1, start=0.2, background_damping=5.0),
+    *OF_TRIANGLES, *LOOSE, without={"removal", *OF_BONDS}, porosity=0.42, mu=0.1, start=0.2, background_damping=5.0),
     LooseCutting3D)

@@ -8,6 +8,8 @@ import heapq
 import math
 
 import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
 from scipy.spatial import Delaunay, cKDTree
 
 from .checks import positive, require
@@ -65,8 +67,8 @@ def check_boundary(vertices, facets, name="boundary"):
     """(vertices, facets) as float and int arrays, vertices that no facet uses left out.
 
     Raises ParameterError (under `name`) unless the vertices are finite, no facet is degenerate, every edge (in the
-    plane: end) of a facet is that of exactly one other, run through in the opposite sense, the volume is positive, and no
-    two facets run through each other.
+    plane: end) of a facet is that of exactly one other, run through in the opposite sense, the volume is positive, no two
+    facets run through each other, and all hang together.
     """
     vertices, facets = np.array(vertices, float), np.array(facets, int)
     d = vertices.shape[1] if vertices.ndim == 2 else 0
@@ -91,6 +93,9 @@ def check_boundary(vertices, facets, name="boundary"):
     require(volume(vertices, facets) > 0, name, f"{len(facets)} facets", "oriented with its normals outwards")
     through = len(crossings(vertices, facets))
     require(through == 0, name, f"{through} crossings", "free of facets that run through each other")
+    shared = facets.ravel(), np.roll(facets, 1, axis=1).ravel()
+    pieces, _ = connected_components(coo_matrix((np.ones(facets.size), shared), 2 * [len(vertices)]), directed=False)
+    require(pieces == 1, name, f"{pieces} separate surfaces", "one piece without a cavity")
     return vertices, facets
 
 

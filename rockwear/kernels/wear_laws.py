@@ -50,6 +50,11 @@ class WearLaw:
     def needs(self):
         return ((self.force, self.exponent),)
 
+    @property
+    def wears(self):
+        """Whether anything wears under this law."""
+        return self.k > 0
+
     def volume(self, slid, hardness, area):
         """Worn volume, m3. slid: {(force, exponent): (n,) N^exponent m}; hardness: Pa; area: m2, 2 r b of each."""
         n, factor = self.exponent, self.share / self.mu
@@ -146,6 +151,11 @@ class SumOfModes:
     def needs(self):
         return tuple(dict.fromkeys(need for mode in self.modes for need in mode.needs))
 
+    @property
+    def wears(self):
+        """Whether anything wears in any mode."""
+        return any(mode.wears for mode in self.modes)
+
     def volume(self, slid, hardness, area):
         """Worn volume, m3, as WearLaw.volume."""
         return sum(mode.volume(slid, hardness, area) for mode in self.modes)
@@ -177,9 +187,12 @@ LAWS = ("dissipation", "pressure", "power", "modes")
 def wear_law(name, *, k, mu, exponent=1.0, modes=""):
     """The law called `name` in LAWS. modes: "k/exponent/share, ..." of each mode; k counts for the others.
 
-    Raises ParameterError for a name that is none of these, or modes that cannot be read.
+    Raises ParameterError for a name that is none of these, modes that cannot be read, or modes or an exponent that are not
+    this law's.
     """
     require(name in LAWS, "wear_law", name, f"one of {', '.join(LAWS)}")
+    require(name == "power" or exponent == 1, "wear_exponent", exponent, f"1 under the law {name}: it is of the power law")
+    require(name == "modes" or not modes, "wear_modes", modes, f"left out under the law {name}")
     if name == "pressure":
         return PressureArchard(k=k)
     if name == "power":

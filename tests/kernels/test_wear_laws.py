@@ -65,11 +65,17 @@ def test_modes_add_up_and_share_the_friction():
     assert square.volume(slid(square), H, AREA) == pytest.approx(exact, rel=1e-12)
 
 
-def test_acceleration_multiplies_every_form():
-    for name in ("dissipation", "pressure", "power", "modes"):
-        law = wear_law(name, k=K, mu=MU, exponent=1.5, modes="0.01/1/0.6, 3/2/0.4")
-        volume = law.volume(slid(law), H, AREA)
-        assert law.scaled(7000).volume(slid(law), H, AREA) == pytest.approx(7000 * volume, rel=1e-12)
+@pytest.mark.parametrize("name, own", [("dissipation", {}), ("pressure", {}), ("power", {"exponent": 1.5}),
+                                       ("modes", {"modes": "0.01/1/0.6, 3/2/0.4"})])
+def test_acceleration_multiplies_every_form(name, own):
+    law = wear_law(name, k=K, mu=MU, **own)
+    volume = law.volume(slid(law), H, AREA)
+    assert law.scaled(7000).volume(slid(law), H, AREA) == pytest.approx(7000 * volume, rel=1e-12)
+    assert law.wears and not law.scaled(0).wears
+    for other in ({"exponent": 2.0}, {"modes": "0.01/1/1"}):
+        if set(other) != set(own):
+            with pytest.raises(ParameterError, match="wear_exponent|wear_modes"):
+                wear_law(name, k=K, mu=MU, **{**own, **other})
 
 
 def test_the_linear_laws_are_the_rate_of_archard():

@@ -149,6 +149,16 @@ def test_triangles_lose_archards_volume_and_do_not_fold(blunted):
     books_close(blunted, 0.03)
 
 
+def test_one_mode_of_several_wears_and_is_judged_like_archards_law(blunted, tmp_path):
+    """Its k stands in the modes; wear_coefficient is 0."""
+    run = scene("cutting_3d_triangles", tmp_path / "run", wear_law="modes", wear_modes="3e-9/1/1", reshape="true", report="false",
+                **FACETED)
+    assert run.code == 0, run.stderr
+    for name in ("worn_volume", "wear_distribution_error", "trusted_acceleration"):
+        assert value(run, name) == pytest.approx(value(blunted, name), rel=1e-6, abs=0)
+    assert (run.out / "tool.stl").exists()
+
+
 def test_contacts_that_pass_to_facets_given_elsewhere_bring_no_energy(tmp_path):
     """M's soft contacts, worn so much that facets are given elsewhere under particles: not counted, they add 2 %."""
     run = scene("cutting_3d_triangles", tmp_path / "run", wear_coefficient=1e-7, reshape="true", report="false",
@@ -263,13 +273,15 @@ CUBE = (0.04 * (np.array(list(np.ndindex(2, 2, 2))) - 0.5),
     (1, CUBE[1][1:], {}, "3 open edges: must be closed: it has holes"),
     (1, np.vstack([CUBE[1][:1, ::-1], CUBE[1][1:]]), {}, "must be of one orientation"),
     (1, CUBE[1][:, ::-1], {}, "must be oriented with its normals outwards"),
+    (1, np.vstack([CUBE[1], 8 + CUBE[1]]), {}, "2 separate surfaces: must be one piece"),
     (1000, CUBE[1], {}, "40 x 40 x 40 m: must be shorter and narrower than the block, 0.28 x 0.1 x 0.16"),
     (0.5, CUBE[1], {}, "height of 0.02 m: must be higher than depth_of_cut = 0.026"),
     (1, CUBE[1], dict(outline="my_tooth.csv"), "must be without outline = my_tooth.csv")])
 def test_an_stl_file_that_cannot_be_the_tool_is_refused_in_a_line(tmp_path, scale, facets, values, words):
     file = tmp_path / "tool.stl"
     if scale:
-        write_stl(file, scale * CUBE[0], facets)
+        # A second, smaller cube in front of it, for those facets that take it.
+        write_stl(file, scale * np.vstack([CUBE[0], 0.2 * CUBE[0] + [0.06, 0, 0]]), facets)
     run = scene("cutting_3d_triangles", tmp_path / "run", stl=file, **FACETED, **values)
     said = [line for line in run.stderr.splitlines() if "error" in line.lower() or "Traceback" in line]
     assert run.code == 2 and len(said) == 1 and said[0].startswith(f"error: stl = {file}") and words in said[0]
