@@ -31,6 +31,7 @@ STEELS = {"MET71": MET71, "MET91": MET91}
 UNITS = {"force": {"N": 1, "kN": 1e3}, "friction": {"N": 1, "kN": 1e3}, "area": {"mm2": 1e-6, "cm2": 1e-4, "m2": 1},
          "pressure": {"Pa": 1, "MPa": 1e6}, "distance": {"m": 1, "km": 1e3}, "depth": {"um": 1e-6, "mm": 1e-3, "m": 1},
          "temperature": {"degC": 1, "K": 1}, "hardness": {"HB": BRINELL, "Pa": 1, "MPa": 1e6}}
+SI = {"force": "N", "friction": "N", "area": "m2", "pressure": "Pa", "distance": "m", "depth": "m", "hardness": "Pa"}
 NEEDED = "distance", "depth"
 
 
@@ -71,36 +72,44 @@ def _row(row, line, brinell):
 def tests_of(rows, *, mu, brinell=BRINELL):
     """LaboratoryTest of rows of `read`. Raises ParameterError for what is missing, not positive, or outside a table."""
     columns = [_measured(row, mu, brinell) for row in rows]
-    names = "pressure", "friction_stress", "distance", "depth", "hardness", "relative_error"
-    return LaboratoryTest(**{name: np.array([column[i] for column in columns]) for i, name in enumerate(names)})
+    return LaboratoryTest(**{name: np.array([column[name] for column in columns]) for name in columns[0]})
 
 
 def _measured(row, mu, brinell):
+    """{field of LaboratoryTest: value} of a row."""
     for name in NEEDED:
         require(name in row, name, "nothing", "given in every row")
-    relative = [row.get(f"{name} error", 0.0) / positive(name, row[name], "m") for name in NEEDED]
+    of = {name: _relative_error(row, name) for name in SI}
     if "pressure" in row:
-        pressure = positive("pressure", row["pressure"], "Pa")
+        pressure, pressure_error = row["pressure"], of["pressure"] or np.hypot(of["force"], of["area"])
     else:
         for name in ("force", "area"):
             require(name in row, name, "nothing", "given in every row without a pressure")
-        pressure = positive("force", row["force"], "N") / positive("area", row["area"], "m2")
-    if "pressure error" in row:
-        relative.append(row["pressure error"] / pressure)
-    else:
-        relative += [row[f"{name} error"] / row[name] for name in ("force", "area") if f"{name} error" in row]
-    friction = mu * pressure
+        pressure, pressure_error = row["force"] / row["area"], np.hypot(of["force"], of["area"])
+    friction, friction_error = mu * pressure, pressure_error
     if "friction" in row:
         require("force" in row, "force", "nothing", "given with friction")
-        friction = pressure * positive("friction", row["friction"], "N") / positive("force", row["force"], "N")
-    hardness, error = _hardness(row, brinell)
-    return pressure, friction, row["distance"], row["depth"], hardness, float(np.hypot.reduce([*relative, error]))
+        friction = pressure * row["friction"] / row["force"]
+        # Force over area times friction over force: the force is in neither.
+        friction_error = np.hypot(of["friction"], of["area"]) if not of["pressure"] else np.hypot.reduce(
+            [of["friction"], of["force"], of["pressure"]])
+    hardness, hardness_error = _hardness(row, of, brinell)
+    return {"pressure": pressure, "friction_stress": friction, "distance": row["distance"], "depth": row["depth"],
+            "hardness": hardness, "rate_error": np.hypot(of["depth"], of["distance"]), "pressure_error": pressure_error,
+            "friction_error": friction_error, "hardness_error": hardness_error}
 
 
-def _hardness(row, brinell):
+def _relative_error(row, name):
+    """Stated standard error of a quantity of the row over its value, 0 where none is stated."""
+    error = row.get(f"{name} error", 0.0)
+    require(name in row or not error, f"{name} error", error, f"given with {name}", SI[name])
+    return error / positive(name, row[name], SI[name]) if name in row else 0.0
+
+
+def _hardness(row, errors, brinell):
     """(hardness in Pa, its relative standard error)."""
     if "hardness" in row:
-        return row["hardness"], row.get("hardness error", 0.0) / positive("hardness", row["hardness"], "Pa")
+        return row["hardness"], errors["hardness"]
     steel, kelvin = row.get("steel", ""), row.get("temperature")
     require(steel in STEELS, "steel", steel, f"one of {', '.join(STEELS)}, or hardness given")
     require(kelvin is not None, "temperature", "nothing", "given in every row without a hardness")
@@ -114,7 +123,7 @@ def _hardness(row, brinell):
 
 
 def fit(rows, *, law="pressure", mu=0.3, exponent=1.0, modes="", brinell=BRINELL):
-    """Fit the law to each steel's rows. -> {steel: {"tests", "law", "fit", "rows": [(k, error)], "exponent"}}.
+    """Fit the law to each steel's rows. -> {steel: {"tests", "error", "law", "fit", "rows": [(k, error)], "exponent"}}.
 
     exponent: of the power law; None fits it as well. Rows alone are fitted one by one unless the law has several modes.
     """
@@ -133,7 +142,7 @@ def fit(rows, *, law="pressure", mu=0.3, exponent=1.0, modes="", brinell=BRINELL
             for row in own:
                 _, one = alone.fit(tests_of([row], mu=mu, brinell=brinell))
                 single.append((float(one.k[0]), float(one.uncertainty[0])))
-        found[steel] = {"tests": tests, "law": fitted, "fit": result, "rows": single, "exponent": n}
+        found[steel] = {"error": fitted.error_of(tests), "tests": tests, "law": fitted, "fit": result, "rows": single, "exponent": n}
     return found
 
 
@@ -157,6 +166,9 @@ def lines(found):
             yield f"{steel:6s} all tests{mode}: k = {plus_minus(k, u)}"
         if one["exponent"]:
             yield f"{steel:6s} exponent n = {plus_minus(*one['exponent'])}"
+        errors = one["error"]
+        if np.any(errors > 0) and not np.all(errors > 0):
+            yield f"{steel:6s} some tests state no error: all count alike, and the error of k is their scatter"
         if one["fit"].misfit > 4:
             yield (f"{steel:6s} the tests differ by {one['fit'].misfit**0.5:.1f} times their stated errors: "
                    "k is not one number here, or the errors are larger")
@@ -170,7 +182,8 @@ def draw(found, file):
     for number, (steel, one) in enumerate(found.items()):
         tests, colour = one["tests"], f"C{number}"
         x, rate = 1e3 * tests.pressure / tests.hardness, 1e6 * tests.depth / tests.distance
-        axes.errorbar(x, rate, yerr=rate * tests.relative_error, fmt="o", color=colour, capsize=3, zorder=3)
+        axes.errorbar(x, rate, yerr=rate * tests.rate_error,
+                      xerr=x * np.hypot(tests.pressure_error, tests.hardness_error), fmt="o", color=colour, capsize=3, zorder=3)
         if isinstance(one["law"], SumOfModes):
             words = ", ".join(f"{k:.3g}" for k in one["fit"].k)
             axes.plot(x, 1e6 * one["fit"].depth / tests.distance, "x", color=colour,

@@ -55,6 +55,29 @@ def test_errors_propagate_column_by_column(tmp_path):
     assert u / k == pytest.approx(10 * slope / MET91(550 + 273.15), rel=1e-9)
 
 
+def test_errors_count_as_often_as_their_quantity_stands_in_k(tmp_path):
+    """k = (w / s) (H / p)^n, and with measured friction k = w H mu A / (s T), whatever the force."""
+    file = tmp_path / "mine.csv"
+    file.write_text("pressure [MPa],distance [m],depth [mm],hardness [MPa],pressure error [MPa],hardness error [MPa],depth error [mm]\n"
+                    "10,500,0.5,5000,1,200,0.015\n", encoding="utf-8")
+    for law, exponent in (("pressure", 1.0), ("dissipation", 1.0), ("power", 2.0)):
+        (k, u), = fit(read(file), law=law, exponent=exponent)[""]["rows"]
+        assert u / k == pytest.approx(np.hypot(0.03, exponent * np.hypot(0.1, 0.04)), rel=1e-12)
+    file.write_text("force [N],friction [N],area [mm2],distance [m],depth [mm],hardness [MPa],force error [N],friction error [N],"
+                    "area error [mm2]\n1000,300,30,500,0.5,5000,100,12,0.9\n", encoding="utf-8")
+    (_, u), (k, v) = (fit(read(file), law=law)[""]["rows"][0] for law in ("pressure", "dissipation"))
+    assert u / k == pytest.approx(np.hypot(0.1, 0.03), rel=1e-12) and v / k == pytest.approx(np.hypot(0.04, 0.03), rel=1e-12)
+
+
+def test_an_error_missing_in_a_row_is_said(tmp_path, capsys):
+    file = tmp_path / "mine.csv"
+    file.write_text("pressure [MPa],distance [m],depth [mm],hardness [MPa],depth error [mm]\n10,500,0.5,5000,0.01\n"
+                    "10,500,0.6,5000,\n", encoding="utf-8")
+    assert main([str(file)]) == 0 and "some tests state no error" in capsys.readouterr().out
+    (_, stated), (_, none) = fit(read(file))[""]["rows"]
+    assert stated > 0 and np.isnan(none)
+
+
 def test_own_steel_by_hardness_and_measured_friction(tmp_path):
     file = tmp_path / "mine.csv"
     lines = [f",{p},{p * 2.5 * 0.4},100,{1e3 * 4.0 * (p / 2000)**1.5 * 100},2000" for p in (5, 10, 20, 30)]
@@ -84,6 +107,9 @@ def test_command_line_leaves_numbers_and_a_figure(tmp_path, capsys):
     ("steel,pressure [Pa],distance [m],depth [mm],temperature [K],depth error [mm]\nMET71,1e6,1,1,400,-0.1\n",
      "depth error in line 2 = -0.1 mm: must be at least 0"),
     ("steel,force [N],distance [m],depth [mm],temperature [K]\nMET71,1e6,1,1,400\n", "area = nothing"),
+    ("pressure [Pa],distance [m],depth [mm],hardness [Pa],force error [N]\n1e6,1,1,5e9,3\n",
+     "force error = 3 N: must be given with force"),
+    ("pressure [Pa],force [N],distance [m],depth [mm],hardness [Pa]\n1e6,0,1,1,5e9\n", "force = 0 N: must be greater than 0"),
     ("steel,pressure [Pa],depth [mm],temperature [K]\nMET71,1e6,1,400\n", "distance = nothing")])
 def test_bad_files_end_in_one_line(tmp_path, capsys, text, words):
     file = tmp_path / "bad.csv"

@@ -65,6 +65,11 @@ class WearLaw:
         pressure = test.pressure if self.force == NORMAL else test.friction_stress / self.mu
         return test.distance * (self.share * pressure / test.hardness)**self.exponent
 
+    def error_of(self, test):
+        """(m,) relative standard error of the k of each test: p / H stands to the power n in it."""
+        load = test.pressure_error if self.force == NORMAL else test.friction_error
+        return np.hypot(test.rate_error, self.exponent * np.hypot(load, test.hardness_error))
+
     def rate(self, pressure, hardness):
         """dw/ds (-) of a flat surface under a pressure (Pa) that slides with Coulomb's friction."""
         return self.k * (self.share * pressure / hardness)**self.exponent
@@ -75,7 +80,7 @@ class WearLaw:
 
     def fit(self, test):
         """The k under which this law gives the depths of `test`, a LaboratoryTest. -> (law, Fit)."""
-        found = fit_linear([self.depth_per_k(test)], test, [self])
+        found = fit_linear([self.depth_per_k(test)], test, self.error_of(test))
         return self._with(float(found.k[0])), found
 
 
@@ -118,24 +123,27 @@ class PowerLaw(DissipationArchard):
     def fit_exponent(self, test):
         """The same law with k and n both fitted, from tests at different p / H. -> (law, Fit, (n, its uncertainty)).
 
-        A straight line through log(w / s) over log(p / H). Raises ParameterError for fewer than three
+        A straight line through log(w / s) over log(p / H), weighted by the errors where all are known. Raises ParameterError for fewer than three
         tests, or equal p / H.
         """
         require(len(test.depth) > 2, "tests", len(test.depth), "at least 3 to fit an exponent as well")
         x = np.log(self.share * test.friction_stress / (self.mu * test.hardness))
         require(np.ptp(x) > 1e-9, "pressure", float(test.pressure[0]), "different over hardness in some tests, to "
                 "fit an exponent", "Pa")
-        weight = 1 / test.relative_error if np.all(test.relative_error > 0) else np.ones(len(x))
-        matrix = np.column_stack([x, np.ones(len(x))]) * weight[:, None]
-        right = np.log(test.depth / test.distance) * weight
-        solution = np.linalg.lstsq(matrix, right, rcond=None)[0]
-        rest = right - matrix @ solution
-        spread = np.linalg.inv(matrix.T @ matrix) * (rest @ rest) / (len(x) - 2)
-        k, fitted = float(np.exp(solution[1])), float(solution[0])
-        law = PowerLaw(k=k, mu=self.mu, exponent=fitted, share=self.share)
-        model = k * law.depth_per_k(test)
-        return law, Fit(k=np.array([k]), uncertainty=np.array([k * spread[1, 1]**0.5]), depth=model,
-                        misfit=misfit(model, test, 2)), (fitted, float(spread[0, 0]**0.5))
+        law, rate = self, np.log(test.depth / test.distance)
+        for _ in range(2):  # what errors of p / H weigh depends on the exponent
+            error = law.error_of(test)
+            known = np.all(error > 0)
+            weight = 1 / error if known else np.ones(len(x))
+            matrix = np.column_stack([x, np.ones(len(x))]) * weight[:, None]
+            solution = np.linalg.lstsq(matrix, rate * weight, rcond=None)[0]
+            law = PowerLaw(k=float(np.exp(solution[1])), mu=self.mu, exponent=float(solution[0]), share=self.share)
+        rest = rate * weight - matrix @ solution
+        scatter = (rest @ rest) / (len(x) - 2)
+        spread = np.sqrt(np.diag(np.linalg.inv(matrix.T @ matrix)) * (max(scatter, 1.0) if known else scatter))
+        model = law.k * law.depth_per_k(test)
+        return law, Fit(k=np.array([law.k]), uncertainty=np.array([law.k * spread[1]]), depth=model,
+                        misfit=misfit(model, test, error, 2)), (law.exponent, float(spread[0]))
 
 
 class SumOfModes:
@@ -168,6 +176,10 @@ class SumOfModes:
         """The same modes with `factor` times their k."""
         return SumOfModes([mode.scaled(factor) for mode in self.modes])
 
+    def error_of(self, test):
+        """(m,) as WearLaw.error_of; of modes that answer p / H differently the steepest counts."""
+        return np.max([mode.error_of(test) for mode in self.modes], axis=0)
+
     def depths(self, test):
         """(modes, m) depth (m) in each test that each mode would give with k = 1."""
         return [mode.depth_per_k(test) for mode in self.modes]
@@ -177,7 +189,7 @@ class SumOfModes:
 
         Raises ParameterError where the tests cannot tell the modes apart: too few of them, or all at one p / H.
         """
-        found = fit_linear(self.depths(test), test, self.modes)
+        found = fit_linear(self.depths(test), test, self.error_of(test))
         return SumOfModes([mode._with(float(k)) for mode, k in zip(self.modes, found.k)]), found
 
 
@@ -216,8 +228,9 @@ def _mode(word, mu):
 class LaboratoryTest:
     """Tests of blocks pressed and slid (M 6.6), one a row, all (m,) arrays.
 
-    pressure, friction_stress, hardness: Pa; distance, depth: m; relative_error: standard error of the k of each row, -,
-    0 where not known. Raises ParameterError unless all others are positive.
+    pressure, friction_stress, hardness: Pa; distance, depth: m. Relative standard errors, -, 0 where not known: rate_error
+    of depth over distance, pressure_error, friction_error, hardness_error. Raises ParameterError unless the quantities are
+    positive and the errors not negative.
     """
 
     pressure: np.ndarray
@@ -225,13 +238,17 @@ class LaboratoryTest:
     distance: np.ndarray
     depth: np.ndarray
     hardness: np.ndarray
-    relative_error: np.ndarray
+    rate_error: np.ndarray
+    pressure_error: np.ndarray
+    friction_error: np.ndarray
+    hardness_error: np.ndarray
 
     def __post_init__(self):
         units = {"pressure": "Pa", "friction_stress": "Pa", "distance": "m", "depth": "m", "hardness": "Pa"}
         for name, unit in units.items():
             setattr(self, name, np.array([positive(name, value, unit) for value in np.atleast_1d(getattr(self, name))]))
-        self.relative_error = np.array([not_negative("relative_error", e) for e in np.atleast_1d(self.relative_error)])
+        for name in ("rate_error", "pressure_error", "friction_error", "hardness_error"):
+            setattr(self, name, np.array([not_negative(name, value) for value in np.atleast_1d(getattr(self, name))]))
 
 
 @dataclass
@@ -245,24 +262,24 @@ class Fit:
     misfit: float
 
 
-def misfit(model, test, parameters):
-    """chi2 of the depths over the degrees of freedom; nan without errors or freedom."""
+def misfit(model, test, error, parameters):
+    """chi2 of the depths, with these relative errors, over the degrees of freedom; nan without errors or freedom."""
     freedom = len(model) - parameters
-    if freedom < 1 or not np.all(test.relative_error > 0):
+    if freedom < 1 or not np.all(error > 0):
         return np.nan
-    return float(np.sum(((test.depth - model) / (test.relative_error * test.depth))**2) / freedom)
+    return float(np.sum(((test.depth - model) / (error * test.depth))**2) / freedom)
 
 
-def fit_linear(columns, test, modes):
-    """Least squares for depth = sum k_i column_i, k_i >= 0, weighted by the errors where all are known. -> Fit.
+def fit_linear(columns, test, error):
+    """Least squares for depth = sum k_i column_i, k_i >= 0, weighted by the (m,) relative errors where all are known. -> Fit.
 
     Uncertainty: of one test, its error; of several, the larger of what their errors and what their scatter say. Without
     errors, tests count by their relative deviation, and only the scatter is known.
     """
     columns = np.column_stack(columns)
     count, unknown = columns.shape
-    known = bool(np.all(test.relative_error > 0))
-    weight = 1 / (test.depth * (test.relative_error if known else 1.0))
+    known = bool(np.all(error > 0))
+    weight = 1 / (test.depth * (error if known else 1.0))
     matrix, right = columns * weight[:, None], test.depth * weight
     scale = np.linalg.norm(matrix, axis=0)
     require(count >= unknown and np.linalg.cond(matrix / scale) < 1e8, "tests", count,
@@ -273,4 +290,4 @@ def fit_linear(columns, test, modes):
     variance = np.diag(np.linalg.inv((matrix / scale).T @ (matrix / scale))) / scale**2
     scatter = chi2 / freedom if freedom else (0.0 if known else np.nan)
     uncertainty = np.sqrt(variance * (max(scatter, 1.0) if known else scatter))
-    return Fit(k=k, uncertainty=uncertainty, depth=columns @ k, misfit=misfit(columns @ k, test, unknown))
+    return Fit(k=k, uncertainty=uncertainty, depth=columns @ k, misfit=misfit(columns @ k, test, error, unknown))

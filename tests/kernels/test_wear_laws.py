@@ -22,7 +22,8 @@ def laboratory(law, p=(10e6, 20e6, 40e6, 80e6), s=(100.0, 100.0, 200.0, 50.0), e
     """Tests as the law itself would have them."""
     p, s, hardness = np.array(p), np.array(s), np.linspace(4.5e9, 5e9, len(p))
     test = LaboratoryTest(pressure=p, friction_stress=MU * p, distance=s, depth=np.ones(len(p)), hardness=hardness,
-                          relative_error=np.full(len(p), error))
+                          rate_error=np.full(len(p), error), **{f"{name}_error": np.zeros(len(p)) for name in
+                                                                ("pressure", "friction", "hardness")})
     modes = getattr(law, "modes", [law])
     test.depth = sum(mode.k * mode.depth_per_k(test) for mode in modes) * (1 + noise)
     return test
@@ -100,6 +101,11 @@ def test_modes_and_exponent_find_themselves():
     fitted, found, (n, u) = PowerLaw(k=1, mu=MU, exponent=1).fit_exponent(laboratory(power))
     assert (fitted.k, n) == pytest.approx((3.3, 1.6), rel=1e-9) and u < 1e-6
     assert found.depth == pytest.approx(laboratory(power).depth, rel=1e-9)
+    # Tests that agree better than they claim leave what they claim.
+    exact = laboratory(power, error=0.05)
+    _, _, (_, u) = PowerLaw(k=1, mu=MU, exponent=1).fit_exponent(exact)
+    x = np.log(exact.pressure / exact.hardness)
+    assert u == pytest.approx(0.05 / np.linalg.norm(x - x.mean()), rel=1e-6)
 
 
 def test_uncertainty_of_one_row_is_its_error_and_of_many_their_scatter():
