@@ -39,6 +39,9 @@ PROFILE_PERIOD = 10
 ENERGY_MISSED = 0.05
 """Part of its largest entry that the energy book may miss without a warning."""
 
+LOST = 0.1
+"""Part of Archard's volume that a rule of removal may lose without a warning."""
+
 PARAMETERS = [
     # rock
     Parameter("width", 0.109, "m", above_zero, "width of the specimen", "M 5.1"),
@@ -654,7 +657,14 @@ class Cutting(scene.Scene):
     def _worn_warnings(self):
         short = [] if math.isfinite(self._foremost()) else [
             f"nothing of the tool is left below the rock's surface, of its lowest {self.v.depth_of_cut:g} m: it cuts no more"]
-        return [*short, *self.wear.warnings(), *self._distrust()]
+        return [*short, *self.wear.warnings(), *self._lost_wear(), *self._distrust()]
+
+    def _lost_wear(self):
+        book = self._volume_book()
+        lost = -book["unexplained"] / book["archard"] if book["archard"] > 0 else 0.0
+        return [] if lost <= LOST else [
+            f"removal = {self.v.removal} has lost {100 * lost:.2g} % of Archard's volume: removal = volume conserves it, and less "
+            "is lost at a lower acceleration or a shorter wear_period"]
 
     def _distrust(self):
         v, found = self.v, {name: value for name, (value, _) in self._trust().items()}
