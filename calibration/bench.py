@@ -3,7 +3,7 @@
     python3 -m calibration.bench DIR        (make bench)
 
 Knobs of yade_scripts/test_tooth.py, each against its finest setting on otherwise the same run, two at a time; the
-cost of all our engines together comes from calibration/overhead.py. Sampling, wear and heat do not act back on the motion
+cost of all our engines together comes from calibration/overhead.py. Sampling and heat do not act back on the motion
 while no particle is removed (acceleration 100 here), so their runs follow one trajectory and differ by the knob alone.
 A change of the time step changes which bond breaks first, and then everything: its error is shown on rock that cannot
 break, beside the scatter of the breaking rock over seeds.
@@ -29,7 +29,6 @@ UNBREAKABLE = {**SAME_PATH, "start_up": 2e-4, "Rn": 1e12, "Rt": 1e12, "approach"
 BREAKING = {**SAME_PATH, "start_up": 0.004, "acceleration": 7000, "heat": "false"}
 SAMPLING, DEFAULT_SAMPLING = [1, 2, 5, 10, 20, 50, 100], 1
 ROCK_SAMPLING = [1, 2, 4, 8, 16]
-WEAR = [10, 30, 100, 300, 1000]
 HEAT, DEFAULT_HEAT = [2e-6, 1e-5, 5e-5, 1e-4, 2e-4, 5e-4, 1e-3], 1e-4
 FRACTION, DEFAULT_FRACTION = [0.1, 0.2, 0.4, 0.6, 0.8, 0.9], 0.8
 SEEDS = [1, 2, 3, 4]
@@ -117,7 +116,7 @@ def markdown(result):
     lines = ["# Speed against error", "", "Test tooth at M's resolution; each error against the first row of its table.",
              "Runs go two at a time, so that their wall times are rough; the cost of our engines in the line below the",
              "tables is measured in turns.", "", "![curves](speed_against_error.png)", ""]
-    for name in ("sampling", "rock sampling", "wear", "heat", "step"):
+    for name in ("sampling", "rock sampling", "heat", "step"):
         rows = result[name]
         lines += [f"| {' | '.join(key.replace('_', ' ') for key in rows[0])} |", "|---" * len(rows[0]) + "|",
                   *(f"| {' | '.join(f'{number:.3g}' for number in row.values())} |" for row in rows), ""]
@@ -153,7 +152,6 @@ def main(folder):
     folder.mkdir(parents=True, exist_ok=True)
     jobs = {f"sampling-{n}": {**SAME_PATH, "sampling_period": n} for n in SAMPLING}
     jobs.update({f"rock-{n}": {**SAME_PATH, "rock_sampling_period": n} for n in ROCK_SAMPLING})
-    jobs.update({f"wear-{n}": {**SAME_PATH, "wear_period": n} for n in WEAR})
     jobs.update({f"heat-{p:g}": {**SAME_PATH, "heat_period": p} for p in HEAT})
     jobs.update({f"step-{f:g}": {**UNBREAKABLE, "time_step_fraction": f} for f in FRACTION})
     variants = {"default": {}, "time step 0.3": {"time_step_fraction": 0.3}, "rock graded threefold": {"coarsening": 3}}
@@ -183,7 +181,7 @@ def main(folder):
                     f"of YADE's step of {1e3 * overhead['median']['dead']:.2f} ms")
     figure.savefig(folder / "speed_against_error.png", dpi=110)
     result = {"sampling": sampling, "rock sampling": rows_against_finest(group("rock-"), "rock_sampling_period"),
-              "wear": rows_against_finest(group("wear-"), "wear_period"), "heat": heat, "step": step, "overhead": overhead,
+              "heat": heat, "step": step, "overhead": overhead,
               "seeds": {name: over_seeds(found) for name, found in seeds.items()}}
     (folder / "bench.json").write_text(json.dumps(result, indent=1), encoding="utf-8")
     text = "\n".join([markdown(result), *law_costs(folder), *loading_speed.curve(folder), *heat_study.curve(folder)])

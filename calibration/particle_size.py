@@ -9,7 +9,8 @@ Two ways of wearing whose outlines are known exactly, whatever the particles:
 - pattern: the friction work that a cut of the test tooth in miniature spreads along the outline, smoothed, wears it
   along its normals. The depth d at the curvature c takes the volume d - c d^2 / 2 off a length.
 
-Flat is tried with segments of the same sizes too: both descriptions of the tooth must end at one outline.
+Both are tried with segments of the same sizes too: both descriptions of the tooth must end at one outline. And with more or
+less wear in a visit, which is what the period of wear, the acceleration and the work of a cut make of it.
 
 Sizes are mean diameters. Leaves particle_size.png and particle_size.md in DIR.
 """
@@ -51,7 +52,7 @@ CUT = dict(width=0.06, height=0.04, radius_min=1.5e-3, radius_max=2.2e-3, tooth_
            clearance=10, tip_radius=2e-3, depth_of_cut=0.01, start_up=0.008, cycles=0, heat="false", acceleration=1,
            tool_radius_min=0.22e-3, tool_radius_max=0.28e-3, report="false")
 PORTIONS = 1 / 64, 1 / 8, 1 / 2, 2
-"""Wear in a visit, of a particle's volume, at which the depth rule is tried."""
+"""Wear in a visit, of a particle's volume, at which the rules are tried."""
 
 
 def cut_off(polygon, height):
@@ -176,9 +177,7 @@ class Pattern:
         """Wear `volume` (m3) off the tool. -> (n,) m, the depth at which each normal enters what is left."""
         met = [pair if worn else None for pair, worn in zip(self.entries(tool), self.worn)]
         alive = tool.erosion.alive
-        # A visit's wear of a particle is `portion` of its volume where the pattern is densest.
-        width = 2 * float(tool.radii.mean())
-        visits = math.ceil(volume * self.density.max() * width / (portion * float(tool.volumes.mean())))
+        visits = self.visits(volume, 2 * float(tool.radii.mean()), portion * float(tool.volumes.mean()))
         for _ in range(visits):
             worn = np.zeros(tool.count)
             for pair, density in zip(met, self.density):
@@ -188,14 +187,50 @@ class Pattern:
             tool.erosion.wear(worn)
         return np.array([pair[1][alive[pair[0]]][0] if pair else np.nan for pair in met])
 
+    def visits(self, volume, width, most):
+        """Visits in which a width (m) of the outline wears by no more than `most` (m3), where the pattern is densest."""
+        return math.ceil(volume * self.density.max() * width / most)
 
-def patterned(pattern, polygon, size, seed):
+    def wear_segments(self, boundary, volume, size):
+        """As `wear`, of segments of a size (m)."""
+        visits = self.visits(volume, size, size**2 / 8)
+        for _ in range(visits):
+            first, _ = self.entered(boundary)
+            portion = np.where(self.worn, self.density, 0.0) * RAYS * volume / visits
+            boundary.wear(np.bincount(first, portion, len(boundary.facets)))
+        return self.entered(boundary)[1]
+
+    def entered(self, boundary):
+        """(n,) segment that each normal enters first, and (n,) the depth (m) at which it does."""
+        begin, end = (boundary.vertices[boundary.facets[:, k]] for k in (0, 1))
+        across = np.cross(self.inward[:, None], (end - begin)[None])
+        across[abs(across) < 1e-12] = np.nan
+        away = begin[None] - self.points[:, None]
+        depth, place = np.cross(away, (end - begin)[None]) / across, np.cross(away, self.inward[:, None]) / across
+        depth[~((place >= 0) & (place <= 1) & (depth > -STRIP))] = np.inf
+        first = np.argmin(depth, axis=1)
+        return first, depth[np.arange(len(first)), first]
+
+    def off(self, found, volume):
+        """m, root mean square over strips of what a worn face is off the exact one."""
+        window = round(STRIP / RAYS)
+        off = np.convolve((found - self.depth(volume))[self.worn], np.full(window, 1 / window), "valid")
+        return float(np.sqrt(np.mean(off**2)))
+
+
+def patterned(pattern, polygon, size, seed, removal="volume", portion=1 / 8):
     """A tooth worn by the pattern: outline, and how far (m) it is off the exact one, root mean square over strips."""
-    tool = particles(polygon, size, seed, "volume")
-    found = pattern.wear(tool, PATTERN_WORN)
-    window = round(STRIP / RAYS)
-    off = np.convolve((found - pattern.depth(PATTERN_WORN))[pattern.worn], np.full(window, 1 / window), "valid")
-    return SimpleNamespace(outline=left_of(tool), off=float(np.sqrt(np.mean(off**2))), unexplained=unexplained(tool))
+    tool = particles(polygon, size, seed, removal)
+    found = pattern.wear(tool, PATTERN_WORN, portion)
+    return SimpleNamespace(outline=left_of(tool), off=pattern.off(found, PATTERN_WORN), unexplained=unexplained(tool))
+
+
+def patterned_segments(pattern, polygon, size):
+    """As `patterned`, of segments."""
+    boundary = FacetTool.of_outline(polygon, segment=size, density=STEEL.density).boundary
+    found = pattern.wear_segments(boundary, PATTERN_WORN, size)
+    return SimpleNamespace(outline=boundary.vertices[shapes.loop(boundary.facets)], off=pattern.off(found, PATTERN_WORN),
+                           unexplained=boundary.volume_balance()["unexplained"] / PATTERN_WORN)
 
 
 def rate(errors):
@@ -216,33 +251,38 @@ def main(folder):
         pattern = Pattern(runs.start("cut", "yade_scripts/test_tooth.py", **CUT).result())
     ways = {"flat": {size: [flat(polygon, size, seed) for seed in SEEDS] for size in SIZES},
             "pattern": {size: [patterned(pattern, polygon, size, seed) for seed in SEEDS] for size in SIZES}}
-    lines_of = {size: flat_of_segments(polygon, size) for size in SIZES}
+    segments = {"flat": [flat_of_segments(polygon, size) for size in SIZES],
+                "pattern": [patterned_segments(pattern, polygon, size) for size in SIZES]}
     off = {name: mean_square(rows) for name, rows in ways.items()}
     lines = ["# Particle size and removal rule", "",
              f"A tooth of 30 x 20 mm, {len(SEEDS)} packings a size. Flat: {1e6 * WORN:g} mm2 rubbed off on a plane. "
              f"Pattern: {1e6 * PATTERN_WORN:g} mm2 worn", "by the friction work of a cut. `off` is the root mean square "
              "distance between the worn face and the exact one.", "",
              "| mean diameter, mm | flat: off, mm | pattern: off, mm | Archard's volume unexplained, at most "
-             "| flat, segments of that length: off, mm | unexplained |",
-             "|---|---|---|---|---|---|"]
+             "| segments of that length, flat: off, mm | pattern: off, mm | unexplained |",
+             "|---|---|---|---|---|---|---|"]
     for k, size in enumerate(SIZES):
         worst = max(abs(row.unexplained) for rows in ways.values() for row in rows[size])
         lines.append(f"| {1e3 * size:g} | {1e3 * off['flat'][k]:.3f} | {1e3 * off['pattern'][k]:.3f} | {worst:.0e} | "
-                     f"{1e3 * lines_of[size].off:.3f} | {abs(lines_of[size].unexplained):.0e} |")
+                     + "".join(f"{1e3 * rows[k].off:.3f} | " for rows in segments.values())
+                     + f"{max(abs(rows[k].unexplained) for rows in segments.values()):.0e} |")
     lines += ["", "Off falls with the size to the power " + " and ".join(
         f"{rate(off[name]):.2f} ({name})" for name in ways)
-        + f" and {rate([lines_of[size].off for size in SIZES]):.2f} (segments).", "",
-        "The depth rule instead, 0.5 mm: what it takes off, less Archard's volume, over it.", "",
-        "| wear in a visit, of a particle | flat | pattern |", "|---|---|---|"]
+        + f", of segments {rate([row.off for row in segments['flat']]):.2f} (flat).", "",
+        "More or less wear in a visit, 0.5 mm: how far the conserving rule's outline is off, and what the depth rule takes off, "
+        "less", "Archard's volume, over it.", "",
+        "| wear in a visit, of a particle | conserving rule, pattern: off, mm | depth rule, flat | pattern |", "|---|---|---|---|"]
     for portion in PORTIONS:
-        tools = [particles(polygon, SIZES[1], SEEDS[0], "depth") for _ in ways]
-        rub(tools[0], WORN, portion)
-        pattern.wear(tools[1], PATTERN_WORN, portion)
-        lines.append(f"| {portion:.3g} | " + " | ".join(f"{100 * unexplained(tool):+.1f} %" for tool in tools) + " |")
+        conserving = [patterned(pattern, polygon, SIZES[1], seed, portion=portion) for seed in SEEDS]
+        rubbed = particles(polygon, SIZES[1], SEEDS[0], "depth")
+        rub(rubbed, WORN, portion)
+        lost = unexplained(rubbed), patterned(pattern, polygon, SIZES[1], SEEDS[0], "depth", portion).unexplained
+        lines.append(f"| {portion:.3g} | {1e3 * math.sqrt(np.mean([row.off**2 for row in conserving])):.3f} | "
+                     + " | ".join(f"{100 * part:+.1f} %" for part in lost) + " |")
     (folder / "particle_size.md").write_text("\n".join(lines) + "\n", encoding="utf-8")
     print("\n".join(lines))
     with matplotlib.rc_context(plots.STYLE):
-        draw(polygon, pattern, ways, off, lines_of).savefig(folder / "particle_size.png")
+        draw(polygon, pattern, ways, off, segments).savefig(folder / "particle_size.png")
 
 
 def closed(outline):
@@ -250,7 +290,7 @@ def closed(outline):
     return 1e3 * np.vstack([outline, outline[:1]]).T
 
 
-def draw(polygon, pattern, ways, off, lines_of):
+def draw(polygon, pattern, ways, off, segments):
     """Outlines worn both ways over the exact ones, and how far they are off, over the size."""
     figure = Figure(figsize=(14, 4.8), layout="constrained")
     left, middle, right = figure.subplots(1, 3, width_ratios=(1, 1, 0.8))
@@ -263,9 +303,8 @@ def draw(polygon, pattern, ways, off, lines_of):
         axes.plot(*closed(targets[name]), color="black", linewidth=1.6, label="exact")
         for size, colour in zip(SIZES, ("#2c6e91", "#c8a15a", "#b5341d")):
             axes.plot(*closed(rows[size][0].outline), color=colour, linewidth=1.2, label=f"{1e3 * size:g} mm")
-        if name == "flat":
-            axes.plot(*closed(lines_of[SIZES[1]].outline), color="#6a3d9a", linewidth=1.2, linestyle="--",
-                      label=f"segments, {1e3 * SIZES[1]:g} mm")
+        axes.plot(*closed(segments[name][1].outline), color="#6a3d9a", linewidth=1.2, linestyle="--",
+                  label=f"segments, {1e3 * SIZES[1]:g} mm")
         axes.set(title=titles[name], aspect="equal", xlabel="mm", xlim=(-13, 1), ylim=(-0.5, 10.5))
         axes.legend(loc="upper left")
     sizes = 1e3 * np.array(SIZES)
@@ -274,13 +313,15 @@ def draw(polygon, pattern, ways, off, lines_of):
                      label=f"{name}, power {rate(errors):.2f}")
         for size in SIZES:
             right.loglog([1e3 * size] * len(SEEDS), [1e3 * row.off for row in ways[name][size]], ".", color="0.6")
-    right.loglog(sizes, [1e3 * lines_of[size].off for size in SIZES], "^--", color="#6a3d9a",
-                 label=f"flat, segments, power {rate([lines_of[size].off for size in SIZES]):.2f}")
+    for (name, rows), style in zip(segments.items(), ("^--", "v:")):
+        errors = [row.off for row in rows]
+        right.loglog(sizes, 1e3 * np.array(errors), style, color="#6a3d9a", label=f"{name}, segments, power {rate(errors):.2f}")
     right.set(xlabel="mean diameter or length / mm", ylabel="worn face off the exact one / mm", title="convergence")
+    right.set_ylim(8e-4, 0.4)
     right.set_xticks(sizes, [f"{s:g}" for s in sizes])
-    right.set_yticks([0.01, 0.02, 0.05, 0.1, 0.2, 0.3], ["0.01", "0.02", "0.05", "0.1", "0.2", "0.3"])
+    right.set_yticks([0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.3], ["0.005", "0.01", "0.02", "0.05", "0.1", "0.2", "0.3"])
     right.minorticks_off()
-    right.legend()
+    right.legend(loc="lower right")
     return figure
 
 

@@ -125,7 +125,7 @@ PARAMETERS = [
     Parameter("time_step", 0.0, "s", number(0), "time step itself; 0: by time_step_fraction"),
     Parameter("sampling_period", 1, "steps", integer(1), "between samples of the tool's contacts", "make bench"),
     Parameter("rock_sampling_period", 4, "steps", integer(1), "between samples of sliding rock contacts", "make bench"),
-    Parameter("wear_period", 100, "steps", integer(1), "between updates of wear and removal", "make bench"),
+    Parameter("wear_period", 100, "steps", integer(1), "between updates of wear and removal", "calibration/particle_size.py"),
     Parameter("heat_period", 1e-4, "s", above_zero, "between heat steps, each divided as stability asks", "make bench"),
     Parameter("surface_period", 5e-4, "s", above_zero, "between searches for free surface and open cracks"),
     Parameter("damping_period", 500, "steps", integer(1), "between visits of the background damping"),
