@@ -20,6 +20,7 @@ import sys
 import matplotlib
 import numpy as np
 
+from rockwear.kernels.checks import ParameterError, require
 from rockwear.kernels.outline import contour, nearest_arc
 from rockwear.kernels.wear_statistics import PLACE
 from rockwear.report import plots, shapes
@@ -99,9 +100,17 @@ def figure(groups):
     return drawn
 
 
+def read(folder):
+    """The run in a folder. Raises OSError, or ParameterError where it is none of these."""
+    run = RunFolder(folder)
+    require({"tool", "reshape", "removal"} <= set(run.parameters) and "outline" in run.model, "FOLDER", str(folder),
+            "the folder of a run of test_tooth.py")
+    return run
+
+
 def main(path, folders):
     """Draw the figure at `path` and print a line a group."""
-    groups = grouped(map(RunFolder, folders))
+    groups = grouped(map(read, folders))
     for (tool, factor), runs in groups.items():
         share, its_error = scatter([100 * share_of_friction(run) for run in runs])
         worn, error = scatter([1e12 * worn_once(run) for run in runs])
@@ -115,4 +124,8 @@ if __name__ == "__main__":
     matplotlib.use("Agg")
     if len(sys.argv) < 3:
         sys.exit(__doc__)
-    main(sys.argv[1], sys.argv[2:])
+    try:
+        main(sys.argv[1], sys.argv[2:])
+    except (OSError, ParameterError) as error:
+        print(f"error: {error}", file=sys.stderr)
+        sys.exit(2)

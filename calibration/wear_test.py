@@ -107,6 +107,9 @@ class WearTest(scene.Scene):
         require(v.acceleration > 0, "acceleration", v.acceleration, "greater than 0 for a block that is to wear")
         width = v.block_width or math.sqrt(v.area)
         self.pressure, self.load = v.force / v.area, v.force / v.area * width
+        hardest = float(self.hardness(v.temperature))
+        require(self.pressure < hardest, "force", v.force, f"less than hardness times area, {hardest * v.area:.4g}, where steel "
+                "would flow", "N")
         outline = np.array([(0, 0), (width, 0), (width, v.block_height), (0, v.block_height)])
         if v.packing == "lattice":
             self.tool = Lattice(vertices=outline, radius=v.tool_radius_max, removal=v.removal, material=STEEL)

@@ -102,6 +102,7 @@ def test_stopped_and_resumed_equals_never_stopped(worn, tmp_path):
 @pytest.mark.parametrize("values, words", [
     ({"acceleration": 0}, "acceleration = 0: must be greater than 0"),
     ({"temperature": 20}, "temperature = 20 K: must be inside the hardness table"),
+    ({"force": 1e9}, "force = 1e+09 N: must be less than hardness times area"),
     ({"slip_step": 0.1}, "slip_step = 0.1 m: must be below a hundredth of the simulated distance")])
 def test_bad_input_ends_in_one_line(tmp_path, values, words):
     run = lab(tmp_path / "out", **values)
