@@ -17,7 +17,8 @@ Particles: a contact with the force F that slides by s on a particle of the area
     V = k A s (F / (A H))^n
 
 so a law needs no more of all that happened than sum F^n s by particle, over the contacts that slid: `needs` names these
-sums. Where every sliding contact is at Coulomb's limit, F_T = mu F_n, the forms agree to round-off. They differ in a
+sums. Where every sliding contact is at Coulomb's limit, F_T = mu F_n, the forms agree to round-off (in a cut, where
+work takes the force of the middle of a step, by the first order of the step: 0.3 % at the default). They differ in a
 contact that its dashpot pulls: YADE takes mu |F_n| for its limit, and the friction there counts as dissipation but no
 pressure does. Contacts that stick slide nowhere and wear in no form. With n different from 1 the area counts: worn
 volume then depends on the size of the particles, whose contacts carry the real, uneven pressure.
