@@ -90,12 +90,14 @@ def acceleration(runs):
 def mass_loss(runs):
     """Mass lost against simulated time, and against working hours."""
     figure, (raw, scaled) = plots.canvas(12, 4.4, 1, 2)
-    for name, run in runs.items():
+    colours = matplotlib.colormaps["tab20"](np.arange(len(runs)) % 20)
+    for (name, run), colour in zip(runs.items(), colours):
         time, whole = run.column("time"), run.model["tool_volumes"].sum()
         worn = 100 * run.column("worn_volume") / whole
-        line, = raw.plot(plots.MS * time, worn, label=name)
+        style = dict(color=colour, linestyle="--" if "ripper" in name else "-")
+        raw.plot(plots.MS * time, worn, label=name, **style)
         hours = run.column("working_time") * run.parameter("acceleration", 1.0) / 3600
-        scaled.loglog(hours[worn > 0], worn[worn > 0], color=line.get_color())
+        scaled.loglog(hours[worn > 0], worn[worn > 0], **style)
     raw.plot(plots.MS * OF_M[0], OF_M[1], "k*", markersize=12, label="M 9.2, k × 7000")
     scaled.plot(OF_M[0] * 7000 / 3600, OF_M[1], "k*", markersize=12)
     raw.set(xlabel="simulated time / ms", ylabel="worn off / % of the tool", yscale="log", ylim=(1e-2, 100))

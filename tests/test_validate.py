@@ -28,7 +28,8 @@ def test_only_what_must_hold_fails_the_validation(tmp_path, monkeypatch):
 
 def test_a_finished_run_is_kept_only_for_the_same_values(tmp_path):
     assert not finished(tmp_path, {})
-    (tmp_path / "summary.json").write_text(json.dumps({"parameters": {"kn": 2e10, "heat": False, "test": "tension"}}), encoding="utf-8")
+    stored = {"exit_code": 0, "files": {}, "parameters": {"kn": 2e10, "heat": False, "test": "tension"}}
+    (tmp_path / "summary.json").write_text(json.dumps(stored), encoding="utf-8")
     assert finished(tmp_path, {"kn": "2e10", "heat": "false", "test": "tension"})
     assert not finished(tmp_path, {"kn": 1e10}) and not finished(tmp_path, {"kt": 1e10})
 
