@@ -436,6 +436,12 @@ class Cutting(scene.Scene):
             self._put_back(folder)
         if not self.finished:
             self._catch_up()
+            if self.profile:
+                self.profile.begin_cycle(self._shape())
+
+    def _shape(self):
+        """A number that differs where the tool's shape does."""
+        return float(np.count_nonzero(self.tool.erosion.alive))
 
     def _foremost(self):
         """x (m) in the tool's frame of the foremost of what is left of it below the rock's surface, -inf for nothing."""

@@ -71,6 +71,9 @@ class FacetCutting(Cutting):
     def _profile(self):
         return super()._profile() if self.v.reshape else None
 
+    def _shape(self):
+        return self.tool.boundary.volume
+
     def _put_tool(self):
         self.bodies.add(range(self.tool.count))
 

@@ -89,6 +89,10 @@ class Temperatures(Cutting):
             self._whole_tool()
         super()._put_back(folder)
 
+    def _shape(self):
+        # No pass is like another: they differ in velocity or in the field.
+        return np.nan
+
     def _whole_tool(self):
         """A whole tool at its first temperature, or with the field that the stage starts from."""
         _, velocity, root, _ = self.schedule[self.stage]
@@ -96,7 +100,7 @@ class Temperatures(Cutting):
         # What is said of the wear is said of this tool alone.
         self.wear.events[:] = 0
         if self.profile:
-            self.profile.increments, self.profile.booked = [], np.zeros(self.profile.places)
+            self.profile.forget()
         cold = np.full(self.tool.count, self.v.tool_temperature)
         self.heat.renew_tool(self.field(velocity, root) if root else cold)
 

@@ -299,6 +299,20 @@ def test_wear_can_be_booked_without_any_change_of_shape(tmp_path):
     assert book["stored"] == pytest.approx(book["archard"], rel=1e-12)
 
 
+def test_cycles_that_repeat_each_other_sample_no_more_than_one(tmp_path):
+    """Nothing goes, so each cycle does to the same tool in the same rock what the first did."""
+    runs = [test_tooth(tmp_path / str(cycles), heat="false", removal="none", report="false",
+                       **{**TINY, "start_up": 6e-4, "cycles": cycles, "cycle_time": 8e-4}) for cycles in (1, 3)]
+    profiles = [np.loadtxt(run.out / "wear_profile.csv", delimiter=",", skiprows=1) for run in runs]
+    assert len(profiles[0]) == len(profiles[1])
+    for run, profile in zip(runs, profiles):
+        assert profile.sum() == pytest.approx(value(run, "worn_volume"), rel=1e-9)
+    first, third = (profile.sum(axis=1) for profile in profiles)
+    times = third[first > 0] / first[first > 0]
+    cycle = int(np.argmax(times > 2))
+    assert 0 < cycle and times[:cycle] == pytest.approx(1, rel=1e-3) and times[cycle:] == pytest.approx(3, rel=0.1)
+
+
 def test_accelerated_wear_says_how_far_to_trust_it(cut):
     """The run's own statistics, put together from what it left in its folder."""
     lines = (cut.out / "wear_profile.csv").read_text(encoding="utf-8").splitlines()
