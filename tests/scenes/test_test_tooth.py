@@ -310,7 +310,8 @@ def test_cycles_that_repeat_each_other_sample_no_more_than_one(tmp_path):
     first, third = (profile.sum(axis=1) for profile in profiles)
     times = third[first > 0] / first[first > 0]
     cycle = int(np.argmax(times > 2))
-    assert 0 < cycle and times[:cycle] == pytest.approx(1, rel=1e-3) and times[cycle:] == pytest.approx(3, rel=0.1)
+    # Until trajectories part, which begin in one rock but in another order of its contacts.
+    assert 0 < cycle and times[:cycle] == pytest.approx(1, rel=1e-3) and times[cycle] == pytest.approx(3, rel=0.02)
 
 
 def test_accelerated_wear_says_how_far_to_trust_it(cut):
