@@ -14,8 +14,7 @@ import numpy as np
 
 from calibration import sharp_and_worn
 from calibration.runs import RunFailed, Runs
-from rockwear.kernels.outline import contour
-from rockwear.kernels.wear_statistics import PLACE, difference
+from rockwear.kernels.wear_statistics import difference, middles
 from rockwear.report import page, plots
 from rockwear.report.folder import read_history
 
@@ -53,12 +52,6 @@ def profile(run):
     return np.sum(list(read_history(run.path / "wear_profile.csv")[0].values()), axis=1)
 
 
-def places_from_tip(run):
-    """(b,) m along the first outline from the tip to the middle of each place of the wear profile."""
-    _, arc = contour(run.model["outline"], PLACE / 10)
-    return arc[0] + PLACE * (np.arange(len(profile(run))) + 0.5)
-
-
 def acceleration(runs):
     """Wear of the same work done at several accelerations: distributions, and how far each is from the slowest one.
 
@@ -70,7 +63,7 @@ def acceleration(runs):
     worn = [profile(run) for run in runs.values()]
     found = [100 * difference(share, worn[0]) for share in worn[1:]]
     figure, (along, against) = plots.canvas(12, 4.4, 1, 2)
-    place = plots.MM * places_from_tip(next(iter(runs.values())))
+    place = plots.MM * middles(next(iter(runs.values())).model["outline"], len(worn[0]))
     for name, share in zip(runs, worn):
         along.step(place, 100 * share / share.sum(), where="mid", label=f"{name}: {1e6 * share.sum():.3g} mm² worn")
     reached = place[np.sum([share / share.sum() for share in worn], axis=0) > 1e-3]

@@ -15,6 +15,7 @@ import matplotlib
 import numpy as np
 
 from calibration.runs import RunFailed, Runs
+from calibration.two_tools import scatter
 from rockwear.kernels import cutting_theory
 from rockwear.kernels.checks import ParameterError, require
 from rockwear.report import cutting, page, plots, shapes
@@ -93,12 +94,6 @@ def theory(rake, run):
     return {name: value(force) for name, force in found.items()}
 
 
-def mean_of(values):
-    """(mean, its standard error) of what is finite."""
-    values = values[np.isfinite(values)]
-    return float(np.mean(values)), float(np.std(values, ddof=1) / len(values)**0.5)
-
-
 def figure(teeth, rows):
     """Outlines, and the four quantities against the mass lost."""
     drawn, panels = plots.canvas(12, 7.2, 2, 3)
@@ -115,7 +110,7 @@ def figure(teeth, rows):
         lost = 100 * np.array([row["lost"] for row in rows])
         values = factor * np.array([row[name] for row in rows])
         axes.plot(lost, values, "o", color="#c8a15a", markersize=4, label="one packing")
-        middle, error = np.array([mean_of(values[lost == x]) for x in np.unique(lost)]).T
+        middle, error = np.array([scatter(values[lost == x]) for x in np.unique(lost)]).T
         axes.errorbar(np.unique(lost), middle, error, color="#444444", capsize=3, label="mean, its standard error")
         axes.set(title=label, xlabel="mass lost / %", ylabel=shown, ylim=(0, 1.1 * np.nanmax(values)))
         if name == "peak_cutting_force":
@@ -165,15 +160,16 @@ def write_page(folder, teeth, rows):
         of = [row for row in rows if row["tooth"] == number]
         cells = []
         for name, (_, unit) in QUANTITIES.items():
-            middle, error = mean_of(np.array([row[name] for row in of]))
+            middle, error = scatter(np.array([row[name] for row in of]))
             cells.append(f"{page.quantity(middle, unit)} ± {page.percent(error, middle)}")
         table.append([f"{100 * tooth['lost']:.1f} % lost", f"{math.degrees(tooth['rake']):.0f}°", *cells,
                       *(page.quantity(tooth[name], "N/m") for name in ("Evans", "Nishimatsu"))])
     header = ("tooth", "effective rake", *(label for label, _ in QUANTITIES.values()), "Evans", "Nishimatsu")
     (folder / "report.html").write_text(page.document("sharp and worn", f"{len(rows)} cuts", [page.Section(
         "What wear does to the cut", "The same specimens cut at the same depth by the tooth as it was new and as it wore; "
-        "± is the standard error of the mean over packings. The theories are of the force at which a chip breaks off, beside the peak, and take the "
-        "rake of the line from the lowest point to where the front leaves the rock, and the laboratory's strengths.", [page.image(path), page.table(table, header)])]), encoding="utf-8")
+        "± is the standard error of the mean over packings. The theories are of the force at which a chip breaks off, beside the "
+        "peak, and take the rake of the line from the lowest point to where the front leaves the rock, and the laboratory's "
+        "strengths.", [page.image(path), page.table(table, header)])]), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -75,7 +75,8 @@ def grouped(runs):
 
 
 def scatter(values):
-    """(mean, standard error) over packings."""
+    """(mean, standard error) over packings, of what is finite."""
+    values = np.asarray(values)[np.isfinite(values)]
     return np.mean(values), np.std(values, ddof=1) / len(values)**0.5
 
 

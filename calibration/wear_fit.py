@@ -81,11 +81,12 @@ def _measured(row, mu, brinell):
         require(name in row, name, "nothing", "given in every row")
     of = {name: _relative_error(row, name) for name in SI}
     if "pressure" in row:
-        pressure, pressure_error = row["pressure"], of["pressure"] or np.hypot(of["force"], of["area"])
+        pressure = row["pressure"]
     else:
         for name in ("force", "area"):
             require(name in row, name, "nothing", "given in every row without a pressure")
-        pressure, pressure_error = row["force"] / row["area"], np.hypot(of["force"], of["area"])
+        pressure = row["force"] / row["area"]
+    pressure_error = of["pressure"] or np.hypot(of["force"], of["area"])
     friction, friction_error = mu * pressure, pressure_error
     if "friction" in row:
         require("force" in row, "force", "nothing", "given with friction")

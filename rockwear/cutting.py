@@ -437,9 +437,9 @@ class Cutting(scene.Scene):
         if not self.finished:
             self._catch_up()
             if self.profile:
-                self.profile.begin_cycle(self._shape())
+                self.profile.begin_cycle(self._mark_of_shape())
 
-    def _shape(self):
+    def _mark_of_shape(self):
         """A number that differs where the tool's shape does."""
         return float(np.count_nonzero(self.tool.erosion.alive))
 

@@ -71,7 +71,7 @@ class FacetCutting(Cutting):
     def _profile(self):
         return super()._profile() if self.v.reshape else None
 
-    def _shape(self):
+    def _mark_of_shape(self):
         return self.tool.boundary.volume
 
     def _put_tool(self):

@@ -89,7 +89,7 @@ class Temperatures(Cutting):
             self._whole_tool()
         super()._put_back(folder)
 
-    def _shape(self):
+    def _mark_of_shape(self):
         # No pass is like another: they differ in velocity or in the field.
         return np.nan
 

@@ -23,6 +23,11 @@ def places(outline, points):
     return np.floor((nearest_arc(points, along, arc) - arc[0]) / PLACE).astype(int)
 
 
+def middles(outline, count):
+    """(count,) m along an outline (k, 2) m, from its tip, to the middles of its places."""
+    return contour(outline, PLACE / 10)[1][0] + (np.arange(count) + 0.5) * PLACE
+
+
 def distribution_error(increments):
     """Expected relative error of a wear distribution that was sampled in one run, by batch means.
 

@@ -425,8 +425,7 @@ def trust(run):
     if deviation is None or not factor:
         return None
     worn = increments.sum(axis=0)
-    points, arc = contour(run.model["outline"], SPACING)
-    place = arc[0] + (np.arange(len(worn)) + 0.5) * wear_statistics.PLACE
+    place = wear_statistics.middles(run.model["outline"], len(worn))
     figure, (along, against) = canvas(12, 4.2, 1, 2)
     along.bar(MM * place, 100 * worn / worn.sum(), 0.9 * MM * wear_statistics.PLACE, color="#c8a15a",
               yerr=100 * deviation / worn.sum(), ecolor="#444444")
