@@ -3,7 +3,7 @@ PYTHON   := /usr/bin/python3
 PACKAGES := yade python3-numpy python3-scipy python3-matplotlib python3-pil python3-stl python3-pytest python3-pytest-xdist python3-pyflakes
 OUT      := out
 SUDO     := $(if $(filter 0,$(shell id -u)),,sudo)
-TOOTH    := yade -n -x -j1 yade_scripts/test_tooth.py
+TOOTH    := yade -n -x -j1 yade_scripts/tooth_cycles.py
 
 .DEFAULT_GOAL := help
 .PHONY: help setup run test validate bench campaigns campaign-wear campaign-uniaxial lint clean
@@ -29,27 +29,27 @@ setup: ## install what is missing (Debian packages), check that YADE runs
 	@yade --version >/dev/null 2>&1 || { echo "setup: YADE is installed but does not start (try: yade --version)" >&2; exit 1; }
 
 # Rock graded threefold below the cut, and wear fifteen times faster than M's factor of 7000, so that the tip goes in minutes.
-run: setup ## the main job: the test tooth of M 9.2; report in out/test_tooth/report.html
-	$(TOOTH) --coarsening 3 --acceleration 1e5 --out $(OUT)/test_tooth
+run: setup ## the main job: the test tooth of M 9.2; report in out/tooth_cycles/report.html
+	$(TOOTH) --grading_factor 3 --wear_acceleration 1e5 --out $(OUT)/tooth_cycles
 
 test: setup ## all tests
 	$(PYTHON) -m pytest -n 2 --dist loadscope tests
 
 validate: setup ## long validations
-	$(PYTHON) -m calibration.validate $(OUT)/validate
+	$(PYTHON) -m calibration.validation $(OUT)/validate
 
 bench: setup ## speed against error; figures and numbers in out/bench
-	$(PYTHON) -m calibration.bench $(OUT)/bench
+	$(PYTHON) -m calibration.benchmarks $(OUT)/bench
 
 campaigns: setup ## a sweep of the test tooth over seeds, two jobs at a time
 	mkdir -p $(OUT)/campaign
-	yade-batch -j2 --job-threads=1 --log=$(OUT)/campaign/@.log yade_scripts/test_tooth.seeds.table yade_scripts/test_tooth.py
+	yade-batch -j2 --job-threads=1 --log=$(OUT)/campaign/@.log yade_scripts/tooth_cycles.seeds.table yade_scripts/tooth_cycles.py
 
 campaign-wear: setup ## test tooth and ripper worn over many cycles, sharp and worn compared (four hours; goes on when stopped)
-	$(PYTHON) -m calibration.campaign_wear $(OUT)/campaign-wear
+	$(PYTHON) -m calibration.campaigns.wear $(OUT)/campaign-wear
 
 campaign-uniaxial: setup ## the laboratory's laws, slopes of softening and micro-parameters (hours; goes on when stopped)
-	$(PYTHON) -m calibration.campaign_uniaxial $(OUT)/campaign-uniaxial
+	$(PYTHON) -m calibration.campaigns.uniaxial $(OUT)/campaign-uniaxial
 
 lint: setup ## unused names and the like
 	$(PYTHON) -m pyflakes rockwear calibration yade_scripts tests

@@ -7,13 +7,13 @@ passes nothing on to what it uncovers; --removal volume does, so that no wear is
 algorithm in a short run and is no steel's: k / mu = 5e-8 here. With our tooth and depth of cut model II wears a hundred
 times as deep as M's, so that M's own 5e-6 (--wear_coefficient 5e-7) takes the tip away before the first bond breaks.
 """
-import os
+import runpy
 import sys
 
-sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(sys.argv[0]))))
+runpy.run_path(sys.argv[0].replace("cutting_3d_removal.py", "find_rockwear.py"))
 
-from rockwear import run  # noqa: E402
-from rockwear.cutting3d import OF_PARTICLES, ParticleCutting3D, parameters  # noqa: E402
+from rockwear.run import main as run
+from rockwear.scenes.cutting3d import OF_PARTICLES, ParticleCutting3D, parameters
 
 run.main("cutting_3d_removal", parameters(
     *OF_PARTICLES, velocity=0.4, lowering_velocity=0.4, wear_coefficient=0.1 * 5e-8, removal="depth", wear_period=2,

@@ -7,13 +7,13 @@ block, tooth and depth of cut in a figure only, and gives no density and no leng
 of 9 mm come with --full (11,720 of them, M has 11,700); the defaults coarsen them 1.5 times. Models II and III:
 cutting_3d_wear.py, cutting_3d_removal.py.
 """
-import os
+import runpy
 import sys
 
-sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(sys.argv[0]))))
+runpy.run_path(sys.argv[0].replace("cutting_3d_triangles.py", "find_rockwear.py"))
 
-from rockwear import run  # noqa: E402
-from rockwear.cutting3d import OF_TRIANGLES, TriangleCutting3D, parameters  # noqa: E402
+from rockwear.run import main as run
+from rockwear.scenes.cutting3d import OF_TRIANGLES, TriangleCutting3D, parameters
 
 run.main("cutting_3d_triangles", parameters(
     *OF_TRIANGLES, without={"removal"}, lowering_velocity=0.4, cut_time=1.5), TriangleCutting3D)

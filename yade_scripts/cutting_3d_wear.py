@@ -4,15 +4,15 @@
 
 Numbers are M's: rock as in cutting_3d_triangles.py, tool particles of 1.5 mm, 0.4 m/s over 1 s, wear constant
 k / mu = 5e-9 and hardness 1 Pa, none removed. M's tooth is of 28,570 particles where it cuts and of triangles elsewhere;
-here all of it is of particles (28,576 with --full), since only its skin takes part in contact.
+here all of it is of particles (28,576 with --full), since only its surface takes part in contact.
 """
-import os
+import runpy
 import sys
 
-sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(sys.argv[0]))))
+runpy.run_path(sys.argv[0].replace("cutting_3d_wear.py", "find_rockwear.py"))
 
-from rockwear import run  # noqa: E402
-from rockwear.cutting3d import OF_PARTICLES, ParticleCutting3D, parameters  # noqa: E402
+from rockwear.run import main as run
+from rockwear.scenes.cutting3d import OF_PARTICLES, ParticleCutting3D, parameters
 
 run.main("cutting_3d_wear", parameters(
     *OF_PARTICLES, velocity=0.4, lowering_velocity=0.4, wear_coefficient=0.1 * 5e-9, snapshot_period=0.02,

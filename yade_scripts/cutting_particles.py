@@ -6,17 +6,17 @@ With `--removal none` the shape stays, as in M's first analysis. M cuts 40 mm in
 defaults cut as far at 1 m/s, slow against every wave in the rock. (--velocity 0.04 --start_up 1 is M's.) Wear is M's,
 k / mu = 5e-9 and H = 1 Pa: a test of the algorithm, no steel.
 """
-import os
+import runpy
 import sys
 
-sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(sys.argv[0]))))
+runpy.run_path(sys.argv[0].replace("cutting_particles.py", "find_rockwear.py"))
 
-from rockwear import run  # noqa: E402
-from rockwear.cutting import Cutting, parameters  # noqa: E402
+from rockwear.run import main as run
+from rockwear.scenes.cutting import Cutting, parameters
 
 TOOL = parameters(
     tool_radius_min=0.5e-3, tool_radius_max=0.5e-3, tool_kn=20e9, tool_kt=20e9, tool_mu=0.839, velocity=1.0,
-    start_up=0.04, cycles=0, removal="depth", wear_coefficient=0.839 * 5e-9, hardness=1.0, acceleration=1.0, heat=False,
+    start_up=0.04, cycles=0, removal="depth", wear_coefficient=0.839 * 5e-9, hardness=1.0, wear_acceleration=1.0, heat=False,
     record_period=1e-4)
 
 run.main("cutting_particles", TOOL, Cutting)

@@ -8,14 +8,14 @@ vertices: --reshape true --wear_coefficient 0.01128 --hardness 0 --acceleration 
 is too high for a tool that recedes. M cuts 40 mm at 0.04 m/s, some 9 million steps; the default goes the same way
 fifty times as fast (shorter ones meet a single chip), and --velocity 0.04 --start_up 1 is M's.
 """
-import os
+import runpy
 import sys
 
-sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(sys.argv[0]))))
+runpy.run_path(sys.argv[0].replace("cutting_segments.py", "find_rockwear.py"))
 
-from rockwear import run  # noqa: E402
-from rockwear.facet_cutting import FacetCutting, parameters  # noqa: E402
+from rockwear.run import main as run
+from rockwear.scenes.facet_cutting import FacetCutting, parameters
 
 run.main("cutting_segments", parameters(
     tool_kn=20e9, tool_kt=20e9, tool_mu=0.839, velocity=2.0, start_up=0.02, cycles=0, hardness=1.0, wear_coefficient=0.839,
-    acceleration=1.0, reshape=False), FacetCutting)
+    wear_acceleration=1.0, reshape=False), FacetCutting)

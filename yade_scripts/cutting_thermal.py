@@ -4,21 +4,21 @@
 
 With `--conduction false` all heat stays with the particles that it arose at, as in M's first case. M cuts 40 mm in 1 s
 at 0.04 m/s: nine million steps. The mechanics here run a hundred times as fast as the process, at 4 m/s, slow against
-every wave in the rock; heat has its full second. (--speed_up 1 is M's own, in some four hours.) Wear is M's, k / mu =
+every wave in the rock; heat has its full second. (--time_scale 1 is M's own, in some four hours.) Wear is M's, k / mu =
 1e-10 and H = 100 Pa: little, and no steel. M shares friction heat equally; it gives no conductance from tool to rock.
 """
-import os
+import runpy
 import sys
 
-sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(sys.argv[0]))))
+runpy.run_path(sys.argv[0].replace("cutting_thermal.py", "find_rockwear.py"))
 
-from rockwear import run  # noqa: E402
-from rockwear.cutting import Cutting, parameters  # noqa: E402
+from rockwear.run import main as run
+from rockwear.scenes.cutting import Cutting, parameters
 
 THERMAL = parameters(
     rock_specific_heat=3000.0, rock_conductivity=0.1, tool_radius_min=0.5e-3, tool_radius_max=0.5e-3,
-    tool_kn=20e9, tool_kt=20e9, tool_mu=0.839, tooth_height=0.078, tooth_width=0.055, velocity=0.04, speed_up=100.0,
-    start_up=1.0, cycles=0, hardness=100.0, wear_coefficient=0.839e-10, acceleration=1.0, heat_sharing="equal",
+    tool_kn=20e9, tool_kt=20e9, tool_mu=0.839, tooth_height=0.078, tooth_width=0.055, velocity=0.04, time_scale=100.0,
+    start_up=1.0, cycles=0, hardness=100.0, wear_coefficient=0.839e-10, wear_acceleration=1.0, heat_sharing="equal",
     heat_period=0.01, surface_period=0.05, record_period=2e-3)
 
 run.main("cutting_thermal", THERMAL, Cutting)

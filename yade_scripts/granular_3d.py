@@ -6,13 +6,13 @@ Numbers are M's: kn = 1e6 N/m, mu = 0.1 between particles and against the tooth,
 box, tooth and depth of cut in a figure only, and gives no density: they are ours. M's 11,700 spheres of 9 mm come with
 --full; the defaults coarsen them 1.5 times. The box's bottom and sides are spheres that are held.
 """
-import os
+import runpy
 import sys
 
-sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(sys.argv[0]))))
+runpy.run_path(sys.argv[0].replace("granular_3d.py", "find_rockwear.py"))
 
-from rockwear import run  # noqa: E402
-from rockwear.cutting3d import LOOSE, OF_BONDS, OF_TRIANGLES, LooseCutting3D, parameters  # noqa: E402
+from rockwear.run import main as run
+from rockwear.scenes.cutting3d import LOOSE, OF_BONDS, OF_TRIANGLES, LooseCutting3D, parameters
 
 run.main("granular_3d", parameters(
     *OF_TRIANGLES, *LOOSE, without={"removal", *OF_BONDS}, porosity=0.42, mu=0.1, start=0.2, background_damping=5.0),

@@ -4,14 +4,14 @@
     triangular] [--across 80] [--name value ...] [--out DIR] [--resume]
 
 Without words all nine, each at three resolutions: profiles over the exact ones, errors, and the order of convergence.
-The parameters, their defaults and sources are those of rockwear.heat_benchmarks; --help prints them.
+The parameters, their defaults and sources are those of rockwear.scenes.heat_benchmarks; --help prints them.
 """
-import os
+import runpy
 import sys
 
-sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(sys.argv[0]))))
+runpy.run_path(sys.argv[0].replace("heat_benchmarks.py", "find_rockwear.py"))
 
-from rockwear import run  # noqa: E402
-from rockwear.heat_benchmarks import PARAMETERS, HeatBenchmarks  # noqa: E402
+from rockwear.run import main as run
+from rockwear.scenes.heat_benchmarks import PARAMETERS, HeatBenchmarks
 
 run.main("heat_benchmarks", PARAMETERS, HeatBenchmarks)

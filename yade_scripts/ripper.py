@@ -5,13 +5,13 @@
 Numbers are M's. M shows the tooth in figures only: rake, clearance, size and depth of cut are ours. Its hardness is
 constant, so nothing is heated here; ripper_temperature.py does that.
 """
-import os
+import runpy
 import sys
 
-sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(sys.argv[0]))))
+runpy.run_path(sys.argv[0].replace("ripper.py", "find_rockwear.py"))
 
-from rockwear import run  # noqa: E402
-from rockwear.cutting import Cutting, parameters  # noqa: E402
+from rockwear.run import main as run
+from rockwear.scenes.cutting import Cutting, parameters
 
 RIPPER = parameters(
     kn=90e9, kt=90e9, tool_kn=20e9, tool_kt=20e9, tool_radius_max=0.6e-3, hardness_temperature=293.15, heat=False,

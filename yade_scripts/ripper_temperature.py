@@ -2,21 +2,21 @@
 
     yade -n -x yade_scripts/ripper_temperature.py [--name value ...] [--out DIR] [--resume]
 
-The start-up leads the tool to the rock. Then a pass at each speed from room temperature, its first 20 mm in the rock: the
+The start-up approach_steps the tool to the rock. Then a pass at each speed from room temperature, its first 20 mm in the rock: the
 transients. The mean load of each pass heats the tool alone: a minute of it, and the quasi-stationary fields with the root
 at 20 C and with an insulated root. From either field at 0.4 m/s a last pass with wear, 7000 times accelerated.
 
-The mechanics always run at --velocity, 4 m/s, while heat has the time of the process (see rockwear/temperatures.py);
+The mechanics always run at --velocity, 4 m/s, while heat has the time of the process (see rockwear/scenes/temperatures.py);
 --velocity 0.4 --start_up 0.001 --cycle_time 0.05 runs them ten times slower and takes ten times as long. M shares
 friction heat equally. M shows the tooth in figures only: its shape and the depth of cut are ours, as in ripper.py.
 """
-import os
+import runpy
 import sys
 
-sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(sys.argv[0]))))
+runpy.run_path(sys.argv[0].replace("ripper_temperature.py", "find_rockwear.py"))
 
-from rockwear import run  # noqa: E402
-from rockwear.temperatures import Temperatures, temperature_parameters  # noqa: E402
+from rockwear.run import main as run
+from rockwear.scenes.temperatures import Temperatures, temperature_parameters
 
 RIPPER = temperature_parameters(
     kn=90e9, kt=90e9, tool_kn=20e9, tool_kt=20e9, tool_radius_max=0.6e-3, heat_sharing="equal",

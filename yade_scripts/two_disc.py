@@ -14,23 +14,24 @@ import sys
 import time
 from pathlib import Path
 
-ROOT = os.path.dirname(os.path.dirname(os.path.abspath(sys.argv[0])))
-sys.path.insert(0, ROOT)
+import runpy
+runpy.run_path(sys.argv[0].replace("two_disc.py", "find_rockwear.py"))
 
-import matplotlib  # noqa: E402
+import matplotlib
 
 matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402
-import numpy as np  # noqa: E402
-import yade  # noqa: E402
+import matplotlib.pyplot as plt
+import numpy as np
+import yade
 
-from rockwear import __version__, parameters  # noqa: E402
-from rockwear.kernels.bond_laws import NonlinearElastoPlastic, linear_law  # noqa: E402
-from rockwear.kernels.checks import ParameterError  # noqa: E402
-from rockwear.parameters import Parameter, above_zero, integer, number, text  # noqa: E402
-from rockwear.report import page  # noqa: E402
-from rockwear.report.folder import RunFolder  # noqa: E402
-from rockwear.two_disc import lead, programme  # noqa: E402
+from rockwear import __version__
+from rockwear.run import parameters
+from rockwear.kernels.bond_laws import NonlinearElastoPlastic, linear_law
+from rockwear.kernels.checks import ParameterError
+from rockwear.kernels.parameter import Parameter, above_zero, integer, number, text
+from rockwear.report import page
+from rockwear.report.folder import RunFolder
+from rockwear.scenes.two_disc import lead, programme
 
 PARAMETERS = [
     Parameter("kn", 2e10, "N/m", above_zero, "normal stiffness", "M 4.6"),
@@ -181,7 +182,7 @@ def write(folder, found, results, values, began):
                "versions": {"rockwear": __version__, "yade": yade.config.version, "python": platform.python_version(),
                             "numpy": np.__version__},
                "results": {name: {"value": value, "unit": unit} for name, (value, unit) in results.items()},
-               "audits": {}, "wall_time": {"unit": "s", "total": time.time() - began}}
+               "balances": {}, "wall_time": {"unit": "s", "total": time.time() - began}}
     (folder / "summary.json").write_text(json.dumps(summary, indent=1), encoding="utf-8")
     rows = [(name, f"{value:.6g}", unit) for name, (value, unit) in results.items()]
     table = page.Section("Results", f"YADE must agree with drive to {AGREEMENT:g} of the strength.",

@@ -2,15 +2,15 @@
 
     yade -n -x yade_scripts/uniaxial.py [--test compression|tension] [--name value ...] [--out DIR] [--resume]
 
-The parameters, their defaults and sources are those of calibration.laboratory; --help prints them. M moves the walls at
+The parameters, their defaults and sources are those of calibration.laboratory.uniaxial; --help prints them. M moves the walls at
 1 mm/s; the default is the fastest speed at which E and strength stay within 2 % of those of slow loading.
 """
-import os
+import runpy
 import sys
 
-sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(sys.argv[0]))))
+runpy.run_path(sys.argv[0].replace("uniaxial.py", "find_rockwear.py"))
 
-from calibration.laboratory import PARAMETERS, UniaxialTest  # noqa: E402
-from rockwear import run  # noqa: E402
+from calibration.laboratory.uniaxial import PARAMETERS, UniaxialTest
+from rockwear.run import main as run
 
 run.main("uniaxial", PARAMETERS, UniaxialTest)

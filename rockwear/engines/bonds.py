@@ -1,25 +1,27 @@
 """Bonds of the rock: YADE's C++ brittle law carries them to their peak, a bond law of ours from there to the end."""
 import math
+import numpy as np
+
 from collections import namedtuple
 
-import numpy as np
 from scipy.spatial.transform import Rotation
-from yade import (Ig2_Sphere_Sphere_ScGeom, InsertionSortCollider, JCFpmPhys,
-                  Law2_ScGeom_JCFpmPhys_JointedCohesiveFrictionalPM, O, Subdomain, Vector3)
+from yade import Ig2_Sphere_Sphere_ScGeom, Law2_ScGeom_JCFpmPhys_JointedCohesiveFrictionalPM, O, Subdomain, Vector3
 
-from . import SLIDING, Engine, contact_energy, geometry_functor, law_functor, yade_engine
+from rockwear.engines.access import geometry_functor, law_functor
+from rockwear.engines.base import Engine
+from rockwear.engines.softening import SofteningBond, _lost, _set_domain
 
-INTACT, BROKEN, GONE = 0, 1, 2
-"""Status of a bond: GONE is broken, long apart and let go; a later meeting is a new contact."""
-UNLIMITED = 1e30
-"""A strength (N) that no bond reaches."""
-NO_CHANGE = 1e-13
-"""Difference of two forces that is round-off, as a fraction of the force."""
+
+INTACT, BROKEN, SEPARATED = 0, 1, 2
+"""Status of a bond: SEPARATED is broken, long apart and let go; a later meeting is a new contact."""
+
 ROLLED = 0.02
 """Shear displacement over r_i + r_j from which, in space, the normals no longer tell how long it is."""
+
 PATIENCE = 8
 """Steps without yielding after which a carried bond goes back to YADE's law. Going back and tripping again costs about
 as much as carrying a bond so long, so that no path costs much more than twice what it must."""
+
 TURNED, TURNING_PERIOD = 1.0, 200
 """Angle (rad) by which bonded particles may roll on each other until they count as bonded anew, and steps between looks.
 A chip of two discs, joined by one bond, may roll like two wheels; in these steps by less than two radians."""
@@ -28,115 +30,12 @@ Crack = namedtuple("Crack", "time x y z normal_x normal_y normal_z mode energy b
 """One broken bond: s, m, unit normal, 1 tension or 2 shear, J dissipated until it was gone, ids of the particles."""
 
 
-class Carried:
-    """A contact whose force is given by a law of ours, step by step, in place of the force of YADE's law.
-
-    law, bond: the law and its state; length: penetrationDepth (m) at which the opening is zero; un, Fn: opening (m)
-    and normal force (N) of the last step; spent: J dissipated so far; quiet: steps since it last yielded; opened: True
-    if it broke by opening.
-
-    YADE's contact is left such that its own law makes the next elastic trial: shearForce is our tangential force, and
-    kn, ks and initD are secants, so that -shearForce/ks is the elastic tangential displacement, which the C++ law
-    turns with the contact and carries forward. Where nothing yields, its trial is the answer, and nothing is written.
-    """
-
-    __slots__ = ("interaction", "geom", "phys", "bodies", "radii",
-                 "law", "bond", "length", "un", "Fn", "spent", "quiet", "opened")
-
-    def __init__(self, *, law, bond, length, un=0.0, Fn=0.0, spent=0.0, quiet=0):
-        self.law, self.bond, self.length, self.un, self.Fn = law, bond, length, un, Fn
-        self.spent, self.quiet = spent, int(quiet)
-
-    def connect(self, interaction):
-        """The contact of the scene that is in O now."""
-        self.interaction, self.geom, self.phys = interaction, interaction.geom, interaction.phys
-        self.bodies, self.radii = (interaction.id1, interaction.id2), (self.geom.refR1, self.geom.refR2)
-
-    def take_over(self):
-        """No tripwire any more: each step comes to `advance`."""
-        phys = self.phys
-        phys.isCohesive, phys.FnMax, phys.FsMax, phys.tanFrictionAngle = True, UNLIMITED, UNLIMITED, 0.0
-        self.quiet = 0
-
-    def rest(self):
-        """Leave the bond to YADE's law, within a new tripwire. -> True if our law has one to give."""
-        wire = self.law.tripwire(self.bond, self.Fn, self.phys.shearForce.norm())
-        if wire:
-            _put_wire(self.phys, wire)
-        return wire is not None
-
-    def trial(self):
-        """Elastic tangential displacement (Vector3, m) as YADE's law has carried it into this step."""
-        phys = self.phys
-        return phys.shearForce * (-1.0 / phys.ks)
-
-    def advance(self, ut, forces):
-        """This step's force, in place of the one that YADE's law has applied.
-
-        ut: as `trial` gives it, m; forces: O.forces.
-        -> J dissipated, the work of the forces over the step (by the trapezoid, as leapfrog does it) less the gain in
-        stored energy; None where YADE's force stands.
-        """
-        geom, phys, law, bond = self.geom, self.phys, self.law, self.bond
-        normal, increment, penetration = geom.normal, geom.shearInc, geom.penetrationDepth
-        un, last, un_plastic = self.length - penetration, self.un, bond.un_plastic
-        bond.turned(ut, increment)
-        Fn, Ft = law.respond(bond, un, (ut[0], ut[1], ut[2]))
-        pull, shear = normal * -Fn, Vector3(-Ft[0], -Ft[1], -Ft[2])
-        change = pull + shear - phys.normalForce - phys.shearForce
-        before, self.un, self.Fn = self.Fn, un, Fn
-        if bond.softening < 1.0:
-            if change.squaredNorm() <= NO_CHANGE**2 * (Fn * Fn + shear.squaredNorm()):
-                return None
-        else:
-            self.opened = law.kn * (un - un_plastic) / law.Rn >= law.kt * ut.norm() / law.Rt
-        (first, second), (arm_1, arm_2), moment = self.bodies, self.radii, change.cross(normal)
-        forces.addF(first, -change)
-        forces.addF(second, change)
-        forces.addT(first, moment * (arm_1 - 0.5 * penetration))
-        forces.addT(second, moment * (arm_2 - 0.5 * penetration))
-
-        kt, ut_before = phys.ks, ut - increment
-        elastic = ut - Vector3(bond.ut_plastic)
-        work = (before + Fn) * (un - last) + (ut_before * kt - shear).dot(increment)
-        released = before * (last - un_plastic) + kt * ut_before.squaredNorm()
-        stored = Fn * (un - bond.un_plastic) - shear.dot(elastic)
-
-        phys.normalForce, phys.shearForce = pull, shear
-        phys.initD = self.length - bond.un_plastic
-        force = shear.norm()
-        if force > 0.0:
-            phys.ks = force / elastic.norm()
-        if Fn != 0.0:
-            phys.kn = Fn / (un - bond.un_plastic)
-        return 0.5 * (work + released - stored)
-
-    def hand_over(self):
-        """Leave what remains to YADE's law: Coulomb friction, on the reference and with the stiffness of our law."""
-        phys, law = self.phys, self.law
-        phys.isCohesive, phys.FnMax, phys.FsMax, phys.tanFrictionAngle = False, 0.0, 0.0, law.mu
-        phys.kn, phys.ks, phys.initD = law.kn, law.kt, self.length - self.bond.un_plastic
-
-
-def _lost(interaction):
-    """True if a body of the contact has been erased: neither a YADE interaction nor the container of them will say so."""
-    bodies = O.bodies
-    return bodies[interaction.id1] is None or bodies[interaction.id2] is None
-
-
-def _put_wire(phys, wire):
-    """Make YADE's law that of the tripwire."""
-    phys.kn, phys.ks, phys.tanFrictionAngle = wire.kn, wire.kt, -wire.slope
-    phys.FnMax, phys.FsMax = min(wire.Fn, UNLIMITED), min(wire.Ft, UNLIMITED)
-    phys.isCohesive = True
-
-
 def _as_long_as_held(ut, carried):
     """Tangential displacement `ut` of this step with the length that the strain energy of the last step tells."""
     phys, increment = carried.phys, carried.geom.shearInc
     before = ut - increment
-    held = 2.0 * phys.ks * (phys.strainEnergy - 0.5 * carried.Fn**2 / phys.kn)
-    length = math.sqrt(max(held, 0.0)) / phys.ks
+    fixed = 2.0 * phys.ks * (phys.strainEnergy - 0.5 * carried.Fn**2 / phys.kn)
+    length = math.sqrt(max(fixed, 0.0)) / phys.ks
     return before.normalized() * length + increment
 
 
@@ -152,21 +51,21 @@ class Bonds(Engine):
     clock: a function giving the time (s) for the crack log.
 
     YADE's JCFpm law gives Fn = kn un, Ft = kt ut until Fn > FnMax or |Ft| > FsMax + slope Fn, which are the law's
-    tripwire. Two counters of the C++ law tell that a wire was tripped, and a sum which: the C++ law adds up the
+    elastic_domain. Two counters of the C++ law tell that a domain was tripped, and a sum which: the C++ law adds up the
     crossSection of what breaks, which serves as the bond's label. In the same step a tripped bond goes into `carried`,
     and Python gives its force in every step. Most of them soften for a moment and are elastic again for long: a bond
-    that has not yielded for some steps is `resting`, with YADE's law, within a new wire about its present forces. So
+    that has not yielded for some steps is `resting`, with YADE's law, within a new domain about its present forces. So
     Python pays for bonds that yield, not for bonds past their peak. Once a bond is gone YADE's law gives the Coulomb
     contact that remains. It keeps its reference length, so that overlaps of the packing never turn into forces. A
     brittle bond is gone in the step of its trip, and costs nothing afterwards.
 
-    A law without a tripwire (nothing is linear within) has all its bonds, and their contacts afterwards, carried by
+    A law without a elastic_domain (nothing is linear within) has all its bonds, and their contacts afterwards, carried by
     Python: some microseconds a bond and step, which is fine for small specimens only.
 
-    Particles may be erased from O at any time, by anyone: their bonds are then GONE, with what they held, and are no
+    Particles may be erased from O at any time, by anyone: their bonds are then SEPARATED, with what they held, and are no
     cracks.
 
-    Where a wire is tripped YADE's law forgets the shear force, or cuts it. What it was follows from where the two
+    Where a domain is tripped YADE's law forgets the shear force, or cuts it. What it was follows from where the two
     bodies have turned since they were bonded; a bond that has slipped and goes to rest, or whose particles have turned
     far against each other (TURNED), counts as bonded anew, with the normals that give its elastic displacement. That is
     exact in 2D; in 3D its error grows with the cube of the angle, and is below 1e-6 of the strength where Rt/kt is 5
@@ -186,7 +85,7 @@ class Bonds(Engine):
         factors = np.ones(len(self.pairs)) if strength_factor is None else np.asarray(strength_factor, float)
         scaled = {factor: law.scaled(factor) for factor in np.unique(factors).tolist()}
         self.laws = [scaled[factor] for factor in factors.tolist()]
-        self.native = law.tripwire(law.virgin()) is not None
+        self.native = law.elastic_domain(law.initial_state()) is not None
         self.status = np.full(len(self.pairs), INTACT, np.int8)
         self.normals = np.zeros((len(self.pairs), 2, 3))
         self.cracks = []
@@ -195,7 +94,7 @@ class Bonds(Engine):
         self.clock = clock
 
     def bond(self):
-        """Give every fresh JCFpm interaction its stiffness and tripwire (once, after the bonding step)."""
+        """Give every fresh JCFpm interaction its stiffness and elastic_domain (once, after the bonding step)."""
         for n, ((i, j), law) in enumerate(zip(self.pairs.tolist(), self.laws)):
             interaction = O.interactions[i, j]
             phys, normal = interaction.phys, interaction.geom.normal
@@ -204,21 +103,21 @@ class Bonds(Engine):
             for side, body in enumerate((interaction.id1, interaction.id2)):
                 self.normals[n, side] = O.bodies[body].state.ori.conjugate() * normal
             if self.native:
-                _put_wire(phys, law.tripwire(law.virgin()))
+                _set_domain(phys, law.elastic_domain(law.initial_state()))
             else:
                 phys.kn, phys.ks = law.kn, law.kt
-                carried = self.carried[n] = Carried(law=law, bond=law.virgin(), length=phys.initD)
+                carried = self.carried[n] = SofteningBond(law=law, bond=law.initial_state(), length=phys.initD)
                 carried.connect(interaction)
-                carried.take_over()
+                carried.release()
 
     def connect(self):
         """Find the interactions of the scene that is in O now."""
         self.functor = law_functor(Law2_ScGeom_JCFpmPhys_JointedCohesiveFrictionalPM)
         self.ratcheting_free = geometry_functor(Ig2_Sphere_Sphere_ScGeom).avoidGranularRatcheting
         self.intact, self.broken, self.ends = {}, {}, self.pairs.copy()
-        self.gone = int(np.sum(self.status == GONE))
+        self.gone = int(np.sum(self.status == SEPARATED))
         for n, (i, j) in enumerate(self.pairs.tolist()):
-            if self.status[n] != GONE:
+            if self.status[n] != SEPARATED:
                 interaction = O.interactions[i, j]
                 self.ends[n] = interaction.id1, interaction.id2
                 for softened in (self.carried, self.resting):
@@ -280,10 +179,10 @@ class Bonds(Engine):
         if _lost(interaction):
             self._forget(n)
             return
-        carried = self.resting.pop(n, None) or Carried(law=self.laws[n], bond=self.laws[n].virgin(), length=phys.initD)
+        carried = self.resting.pop(n, None) or SofteningBond(law=self.laws[n], bond=self.laws[n].initial_state(), length=phys.initD)
         self.carried[n] = carried
         carried.connect(interaction)
-        carried.take_over()
+        carried.release()
         first, second = O.bodies[interaction.id1].state, O.bodies[interaction.id2].state
         geom, bond = carried.geom, carried.bond
         carried.un = carried.length - geom.penetrationDepth - (second.vel - first.vel).dot(geom.normal) * O.dt
@@ -295,7 +194,7 @@ class Bonds(Engine):
             ut = _as_long_as_held(ut, carried)
         spent = carried.advance(ut, O.forces)
         if bond.softening == softening:
-            # The wire lies within the strength, or where an elastic stiffness changes.
+            # The domain lies within the strength, or where an elastic stiffness changes.
             self._rest(n, carried)
             return
         self._book(n, carried, spent)
@@ -365,12 +264,12 @@ class Bonds(Engine):
                                  carried.spent, *self.pairs[n].tolist()))
 
     def _forget(self, n):
-        self.gone += self.status[n] != GONE
-        self.status[n] = GONE
+        self.gone += self.status[n] != SEPARATED
+        self.status[n] = SEPARATED
         for group in (self.intact, self.broken, self.carried, self.resting):
             group.pop(n, None)
 
-    def let_go(self):
+    def erase_separated(self):
         """Erase broken contacts whose particles are apart, both by radii and by the bond's own length."""
         bodies = O.bodies
         erased = [i for i in self.bodies if bodies[i] is None]
@@ -393,7 +292,7 @@ class Bonds(Engine):
         """
         work = 0.0
         for n, longer, shift in zip(numbers.tolist(), growth.tolist(), overlap.tolist()):
-            if self.status[n] == GONE:
+            if self.status[n] == SEPARATED:
                 continue
             if n in self.carried:
                 carried = self.carried[n]
@@ -419,7 +318,7 @@ class Bonds(Engine):
         return touching
 
     def softening(self):
-        """(m,) from 0, a virgin bond, to 1, a broken one."""
+        """(m,) from 0, a initial_state bond, to 1, a broken one."""
         found = np.where(self.status == INTACT, 0.0, 1.0)
         for n, softened in (*self.carried.items(), *self.resting.items()):
             found[n] = softened.bond.softening
@@ -438,7 +337,7 @@ class Bonds(Engine):
 
     def _rows(self, softened):
         """A row of numbers for each bond with a state of its own."""
-        scalars = self.law.virgin().scalars
+        scalars = self.law.initial_state().scalars
         rows = [(n, c.length, c.un, c.Fn, c.spent, c.quiet, *(getattr(c.bond, name) for name in scalars))
                 for n, c in softened.items()]
         return np.array(rows, float).reshape(-1, 6 + len(scalars))
@@ -453,10 +352,10 @@ class Bonds(Engine):
         found = {}
         for n, length, un, Fn, spent, quiet, *values in rows.tolist():
             law = self.laws[int(n)]
-            bond = law.virgin()
+            bond = law.initial_state()
             for name, value in zip(bond.scalars, values):
                 setattr(bond, name, value)
-            found[int(n)] = Carried(law=law, bond=bond, length=length, un=un, Fn=Fn, spent=spent, quiet=quiet)
+            found[int(n)] = SofteningBond(law=law, bond=bond, length=length, un=un, Fn=Fn, spent=spent, quiet=quiet)
         return found
 
     def log(self):
@@ -464,94 +363,14 @@ class Bonds(Engine):
         return {"tensile_cracks": (modes.count(1), "-"), "shear_cracks": (modes.count(2), "-")}
 
 
-class LettingGo(Engine):
+class Separation(Engine):
     """Lets broken bonds go whose particles are apart, so that nobody looks at them any more."""
 
-    name = "letting_go"
+    name = "separation"
 
     def __init__(self, bonds):
         super().__init__()
         self.bonds = bonds
 
     def act(self):
-        self.bonds.let_go()
-
-
-class RockFriction(Engine):
-    """Friction work between rock particles, and where it went.
-
-    Contacts that slide are sampled at each visit: |Ft| times the irreversible slip (P 36), which is the slip less what
-    a rising limit mu |Fn| lets the spring take up. A force of one step works over the mean of the velocities before and
-    after it; to be visited before the integrator, which is foreseen. (YADE's own account of Coulomb contacts,
-    plasticDissipation, is not used: it takes the force after the slip for the mean, and forgets the shear spring of a
-    contact that parts. Where particles collide, each time for a few steps, a fifth of the work is missing there.)
-    """
-
-    name = "rock_friction"
-
-    def __init__(self, *, bonds, motion):
-        super().__init__()
-        self.bonds, self.motion = bonds, motion
-        self.particles = len(motion.per_mass)
-        self.work = np.zeros(self.particles)
-        self.total = 0.0
-
-    def connect(self):
-        self.find_contacts()
-
-    def find_contacts(self):
-        """Look for the contacts between rock particles that are no bonds, and for pairs that may come to touch before
-        the collider runs again or a bond is let go."""
-        self.collider = yade_engine(InsertionSortCollider)
-        self.seen = self.collider.numAction, self.bonds.gone
-        found = [i for i in O.interactions.all() if max(i.id1, i.id2) < self.particles
-                 and not isinstance(i.phys, JCFpmPhys)]
-        # A loaded scene has them in another order.
-        self.possible = sorted(found, key=lambda i: (i.id1, i.id2))
-
-    @property
-    def contacts(self):
-        """The contacts that `find_contacts` found or has foreseen, as far as they are real now."""
-        return [i for i in self.possible if i.isReal]
-
-    def act(self):
-        elapsed = self.elapsed()
-        if (self.collider.numAction, self.bonds.gone) != self.seen:
-            self.find_contacts()
-        mu = self.bonds.law.mu
-        for interaction, phys in self.bonds.broken.values():
-            if phys.crackJointAperture == 0.0:
-                self._sample(interaction, phys, mu, elapsed)
-        for interaction in self.possible:
-            if interaction.isReal:
-                phys = interaction.phys
-                self._sample(interaction, phys, phys.tangensOfFrictionAngle, elapsed)
-
-    def _sample(self, interaction, phys, mu, elapsed):
-        limit, tangential = mu * phys.normalForce.norm(), phys.shearForce.norm()
-        if not tangential > SLIDING * limit > 0.0 or _lost(interaction):
-            return
-        normal = interaction.geom.normal
-        velocity = interaction.geom.incidentVel(interaction, False) + 0.5 * self.motion.gain(interaction, normal)
-        slip = -phys.shearForce.dot(velocity) / tangential
-        taken_up = -mu * phys.kn / phys.ks * normal.dot(velocity)
-        work = tangential * max(slip - taken_up, 0.0) * elapsed
-        self.total += work
-        self.work[interaction.id1] += 0.5 * work
-        self.work[interaction.id2] += 0.5 * work
-
-    def take_work(self):
-        """(n,) friction work (J) of each particle since the last call."""
-        taken, self.work = self.work, np.zeros(self.particles)
-        return taken
-
-    def elastic_energy(self):
-        """Strain energy (J) of the new contacts between rock particles."""
-        self.find_contacts()
-        return contact_energy(self.contacts)
-
-    def state(self):
-        return {"work": self.work.copy(), "total": self.total}
-
-    def restore(self, state):
-        self.work, self.total = state["work"].copy(), float(state["total"])
+        self.bonds.erase_separated()

@@ -2,7 +2,7 @@
 import numpy as np
 from yade import O
 
-from . import Engine
+from rockwear.engines.base import Engine
 
 RESOLUTION = 1e-12
 """Relative change of a radius that is worth a visit: 1e-7 K at 1e-5 1/K, 1e-5 of the strength of a bond at most."""

@@ -1,34 +1,11 @@
 """Heat in rock and tool: friction, conduction, exchange across contacts, convection from the free surface."""
 import math
-
 import numpy as np
 
-from ..kernels.cells import among, conducting
-from ..kernels.receding import neighbours, receded
-from ..kernels.surface import free_surface
-from . import Engine
-
-
-class Conduction(Engine):
-    """Heat in a network and nothing else: every visit lets the time since the last one pass.
-
-    network: kernels.conduction.HeatNetwork; step: s, the longest heat step, at most the stable one.
-    """
-
-    name = "heat"
-
-    def __init__(self, *, network, step):
-        super().__init__()
-        self.network, self.step = network, step
-
-    def act(self):
-        self.network.advance(self.elapsed(), step=self.step)
-
-    def state(self):
-        return {"network": self.network.state()}
-
-    def restore(self, state):
-        self.network.restore(state["network"])
+from rockwear.engines.base import Engine
+from rockwear.kernels.free_surface import free_surface
+from rockwear.kernels.surface_recession import neighbours, receded
+from rockwear.kernels.voronoi import among, conducting
 
 
 class Heat(Engine):
@@ -45,24 +22,24 @@ class Heat(Engine):
     conduction: False leaves all heat where it arises;
     acceleration: of the wear; a particle that it wears away takes 1 / acceleration of its heat along, the rest stays with
     those under it (kernels.receding);
-    root_temperature: K at which the shank holds the tool's mounted particles, None where they are insulated;
-    speed_up: a function giving the seconds of the process in a second of the mechanics (M 12.1), in which heat flows.
+    shank_temperature: K at which the shank holds the tool's fixed particles, None where they are insulated;
+    time_scale: a function giving the seconds of the process in a second of the mechanics (M 12.1), in which heat flows.
     """
 
     name = "heat"
 
     def __init__(self, *, network, bonds, rock_friction, tool_contact, rock, tool, heat_fraction, tool_share,
                  contact_conductance, convection, ambient, rock_paths, tool_paths, surface_period,
-                 acceleration=1.0, conduction=True, root_temperature=None, speed_up=lambda: 1.0):
+                 wear_acceleration=1.0, conduction=True, shank_temperature=None, time_scale=lambda: 1.0):
         super().__init__()
         self.network, self.bonds, self.rock_friction, self.tool_contact = network, bonds, rock_friction, tool_contact
         self.rock, self.tool, self.n = rock, tool, rock.count
         self.heat_fraction, self.tool_share, self.conduction = heat_fraction, tool_share, conduction
         self.contact_conductance, self.convection, self.ambient = contact_conductance, convection, ambient
         self.rock_paths, self.tool_paths = rock_paths, tool_paths
-        self.under, self.handed = neighbours(tool_paths[0], tool.count), 1 - 1 / max(acceleration, 1.0)
+        self.under, self.handed = neighbours(tool_paths[0], tool.count), 1 - 1 / max(wear_acceleration, 1.0)
         self.facing = ~among(rock_paths[0], bonds.pairs, self.n)
-        self.surface_period, self.root_temperature, self.speed_up = surface_period, root_temperature, speed_up
+        self.surface_period, self.shank_temperature, self.time_scale = surface_period, shank_temperature, time_scale
         self.replaced = self.renewed = 0.0
         self.surface_time = -math.inf
         self.clock = 0.0
@@ -71,7 +48,7 @@ class Heat(Engine):
         self.start_average()
 
     def act(self):
-        elapsed = self.elapsed() * self.speed_up()
+        elapsed = self.elapsed() * self.time_scale()
         self.clock += elapsed
         self.averaged["seconds"] += elapsed
         self.network.add_heat(self._sources())
@@ -101,7 +78,7 @@ class Heat(Engine):
         self.exchanged_with = touching
         if touching and self.conduction:
             pairs = np.array(sorted(touching))
-            seconds = self.speed_up() * np.array([touching[i, j] for i, j in pairs.tolist()])
+            seconds = self.time_scale() * np.array([touching[i, j] for i, j in pairs.tolist()])
             self._exchange(heat, self.n + pairs[:, 0], pairs[:, 1], seconds)
         return heat
 
@@ -149,8 +126,8 @@ class Heat(Engine):
         alive = np.flatnonzero(self.tool.erosion.alive)
         if len(alive):
             exposed[self.n + alive] = free_surface(positions=self.tool.positions[alive], radii=self.tool.radii[alive])
-        exposed[:self.n][self.rock.supported] = 0.0
-        exposed[self.n:][self.tool.mounted] = 0.0
+        exposed[:self.n][self.rock.fixed] = 0.0
+        exposed[self.n:][self.tool.fixed] = 0.0
         exposed[in_contact] = 0.0
         present = np.flatnonzero(self.network.present)
         self.network.convect(present, self.convection * exposed[present], self.ambient)
@@ -179,11 +156,11 @@ class Heat(Engine):
         state["fixed"][self.n:] = False
         self.network.restore(state)
         self.renewed += self.network.heat_content - before
-        self._hold_root()
+        self._hold_shank()
 
-    def _hold_root(self):
-        if self.root_temperature is not None:
-            self.network.fix(self.n + np.flatnonzero(self.tool.mounted), self.root_temperature)
+    def _hold_shank(self):
+        if self.shank_temperature is not None:
+            self.network.fix(self.n + np.flatnonzero(self.tool.fixed), self.shank_temperature)
 
     def start_average(self):
         """Forget what `averages` has gathered."""
@@ -204,17 +181,17 @@ class Heat(Engine):
 
     def balance(self):
         """The heat book in J, signed as it changes what rock and tool hold; residual is what it fails to explain."""
-        book = self.network.balance
-        book["generated"] -= self.replaced
-        book["rock_replaced"] = self.replaced
-        book["tool_renewed"] = self.renewed
-        book["stored"] = self.network.heat_content - self.initial_content
-        book["residual"] = book["stored"] - math.fsum(v for k, v in book.items() if k != "stored")
-        return book
+        balance = self.network.balance
+        balance["generated"] -= self.replaced
+        balance["rock_replaced"] = self.replaced
+        balance["tool_renewed"] = self.renewed
+        balance["stored"] = self.network.heat_content - self.initial_content
+        balance["residual"] = balance["stored"] - math.fsum(v for k, v in balance.items() if k != "stored")
+        return balance
 
     def begin(self):
         """Take stock before the first step."""
-        self._hold_root()
+        self._hold_shank()
         self.initial_content = self.network.heat_content - self.network.balance["into_fixed"]
         if self.conduction:
             self.find_surfaces()

@@ -1,10 +1,9 @@
-"""Loading of a specimen between its two ends: the force of the platens, and the end of the test."""
+"""Loading of a specimen between its two ends."""
 import math
 
 from yade import O
 
-from . import Engine
-from .record import RunEnded
+from rockwear.engines.base import Engine
 
 
 class Platens(Engine):
@@ -42,29 +41,3 @@ class Platens(Engine):
     def restore(self, state):
         for name, value in state.items():
             setattr(self, name, float(value))
-
-
-class Failure(Engine):
-    """Ends the run when, with bonds broken, the stress has fallen to a part `drop` of its peak.
-
-    stress: a function giving it (Pa); broken: a function telling whether any bond is broken.
-    """
-
-    name = "failure"
-
-    def __init__(self, *, stress, broken, drop):
-        super().__init__()
-        self.stress, self.broken, self.drop = stress, broken, drop
-        self.peak = 0.0
-
-    def act(self):
-        stress = self.stress()
-        self.peak = max(self.peak, stress)
-        if stress < self.drop * self.peak and self.broken():
-            raise RunEnded(f"failed at {self.peak / 1e6:.4g} MPa", True)
-
-    def state(self):
-        return {"peak": self.peak}
-
-    def restore(self, state):
-        self.peak = float(state["peak"])

@@ -15,7 +15,7 @@ import warnings
 
 import numpy as np
 
-from .checks import ParameterError, not_negative, positive, require
+from rockwear.kernels.checks import ParameterError, not_negative, positive, require
 
 KELVIN = 273.15
 BRINELL = 9.80665e6

@@ -4,7 +4,7 @@ M is the monograph M87, chapter 4; equation numbers are its own. Units are SI. O
 
 Every law is used contact by contact, with a small state that belongs to the bond::
 
-    bond = law.virgin()
+    bond = law.initial_state()
     Fn, Ft = law.respond(bond, un, ut)      # at every step; changes `bond`
 
 `un` is the total opening (float, m) since the bond was made and `ut` the total tangential displacement (1 to 3 floats,
@@ -12,7 +12,7 @@ m), which the caller accumulates and turns with the contact; the vectors named i
 `Ft` is a tuple as long as `ut` and points along the elastic part of `ut`. The arithmetic is on plain floats because the
 engine calls it for some hundred contacts at every step, where numpy would spend its time on bookkeeping.
 
-What all laws share: a virgin bond is free of stress and answers Fn = kn un, Ft = kt ut. Once it is gone there remains
+What all laws share: a initial_state bond is free of stress and answers Fn = kn un, Ft = kt ut. Once it is gone there remains
 a unilateral contact with Coulomb friction (4.5-4.6), on the same reference as the bond: Fn = kn un for un < 0 and 0
 otherwise; the tangential spring continues where the bond left it, slips radially at |Ft| = mu |Fn|, and forgets
 everything when the contact opens. A bond goes only while it is yielding: compression alone never ends one, however
@@ -27,20 +27,20 @@ from rockwear.kernels.checks import finite, not_negative, positive, require
 
 _ORIGIN = (0.0, 0.0, 0.0)
 _HAIR = 1e-12
-"""Width of a tripwire that is to trip as soon as a force changes its sign, as a fraction of the strength."""
+"""Width of a elastic_domain that is to trip as soon as a force changes its sign, as a fraction of the strength."""
 
 _NARROW = 1e-3
-"""Room in a tripwire, as a fraction of the strength, that is not worth having one."""
+"""Room in a elastic_domain, as a fraction of the strength, that is not worth having one."""
 
-Tripwire = namedtuple("Tripwire", "kn kt Fn Ft slope", defaults=(0.0,))
+ElasticDomain = namedtuple("ElasticDomain", "kn kt Fn Ft slope", defaults=(0.0,))
 """Where a bond is linear elastic: as long as its normal force is at most Fn and its shear force at most
 Ft + slope * (normal force), its forces are kn (un - un_plastic), kt (ut - ut_plastic) with constant kn, kt (N/m)."""
 
 
 class Bond:
-    """State of one bond; `BondLaw.virgin` makes it, `BondLaw.respond` changes it.
+    """State of one bond; `BondLaw.initial_state` makes it, `BondLaw.respond` changes it.
 
-    softening    0 in a virgin bond, 1 in a broken one, never falls: the damage omega, or 1 - size of the yield surface
+    softening    0 in a initial_state bond, 1 in a broken one, never falls: the damage omega, or 1 - size of the yield surface
     un_plastic   opening at which the normal force is zero, m
     ut_plastic   tangential displacement at which the tangential force is zero, m (tuple)
     """
@@ -71,20 +71,20 @@ class BondLaw:
     """What every law shares: the contact after breakage, the stored energy, the walk along a path.
 
     A law adds `_bonded(bond, un, ut)`, which returns (Fn, Ft), or None where the bond goes in this step;
-    `_shear(bond, Fn, ut)`, the tangential force as long as nothing slips; `scaled(factor)`; `tripwire(bond, Fn, Ft)`
-    if it has one; and the attributes kt (N/m), Rn and Rt (N): shear stiffness and strengths of a virgin bond.
+    `_shear(bond, Fn, ut)`, the tangential force as long as nothing slips; `scaled(factor)`; `elastic_domain(bond, Fn, Ft)`
+    if it has one; and the attributes kt (N/m), Rn and Rt (N): shear stiffness and strengths of a initial_state bond.
     """
 
     def __init__(self, *, kn, mu):
         self.kn = positive("kn", kn, "N/m")
         self.mu = not_negative("mu", mu)
 
-    def virgin(self):
+    def initial_state(self):
         """State of a new bond, free of stress."""
         return Bond()
 
-    def tripwire(self, bond, Fn=0.0, Ft=0.0):
-        """Tripwire around the forces of the last step: Fn (N), and Ft (N), the length of the tangential one.
+    def elastic_domain(self, bond, Fn=0.0, Ft=0.0):
+        """ElasticDomain around the forces of the last step: Fn (N), and Ft (N), the length of the tangential one.
 
         None where there is no room for one: Fn and Ft are at the limit of what is elastic, or nothing is linear.
         """
@@ -114,7 +114,7 @@ class BondLaw:
         return 0.5 * (Fn * (un - bond.un_plastic) + shear)
 
     def drive(self, un, ut):
-        """Lead a virgin bond along a path.
+        """Lead a initial_state bond along a path.
 
         un, ut  total relative displacements, m; 1-D arrays of one length; opening is positive
         returns (Fn, Ft), N; arrays of the same length; tension is positive, Ft has the sign of the elastic ut
@@ -125,7 +125,7 @@ class BondLaw:
         require(ut.shape == un.shape, "ut", f"array of shape {ut.shape}", f"of the shape {un.shape} of un", "m")
         for name, path in (("un", un), ("ut", ut)):
             require(np.isfinite(path).all(), name, "array with nan or inf", "finite", "m")
-        bond = self.virgin()
+        bond = self.initial_state()
         Fn, Ft = np.empty_like(un), np.empty_like(ut)
         for step, (opening, shift) in enumerate(zip(un.tolist(), ut.tolist())):
             Fn[step], (Ft[step],) = self.respond(bond, opening, (shift,))
@@ -188,8 +188,8 @@ class ElasticBrittle(LinearBondLaw):
     def __init__(self, *, kn, kt, Rn, Rt, mu):
         super().__init__(kn=kn, kt=kt, Rn=Rn, Rt=Rt, H=math.inf, mu=mu)
 
-    def tripwire(self, bond, Fn=0.0, Ft=0.0):
-        return Tripwire(self.kn, self.kt, self.Rn, self.Rt)
+    def elastic_domain(self, bond, Fn=0.0, Ft=0.0):
+        return ElasticDomain(self.kn, self.kt, self.Rn, self.Rt)
 
     def _bonded(self, bond, un, ut):
         Fn = self.kn * un
@@ -222,21 +222,21 @@ class ElasticDamage(LinearBondLaw):
         require(tension_only in (True, False), "tension_only", tension_only, "True or False")
         self.tension_only = bool(tension_only)
 
-    def tripwire(self, bond, Fn=0.0, Ft=0.0):
-        """As far as damage does not grow. A damaged bond opens softer than it closes, so that its wire ends where Fn
+    def elastic_domain(self, bond, Fn=0.0, Ft=0.0):
+        """As far as damage does not grow. A damaged bond opens softer than it closes, so that its domain ends where Fn
         changes its sign; in tension a slope does that: no shear at Fn = 0, both limits at once at the far end. Where
-        only tension damages, the shear of a damaged bond is without bounds, and without a wire."""
+        only tension damages, the shear of a damaged bond is without bounds, and without a domain."""
         left = 1.0 - bond.softening
         limit_n, limit_t = left * self._onset(bond, self.kn, self.Rn), left * self._onset(bond, self.kt, self.Rt)
         if bond.softening == 0.0:
-            wire = Tripwire(self.kn, self.kt, limit_n, limit_t)
+            domain = ElasticDomain(self.kn, self.kt, limit_n, limit_t)
         elif self.tension_only:
             return None
         elif Fn <= 0.0:
-            wire = Tripwire(self.kn, left * self.kt, _HAIR * self.Rn, limit_t)
+            domain = ElasticDomain(self.kn, left * self.kt, _HAIR * self.Rn, limit_t)
         else:
-            wire = Tripwire(left * self.kn, left * self.kt, limit_n, _HAIR * self.Rt, limit_t / limit_n)
-        return wire if Fn < wire.Fn and Ft < wire.Ft + wire.slope * max(Fn, 0.0) else None
+            domain = ElasticDomain(left * self.kn, left * self.kt, limit_n, _HAIR * self.Rt, limit_t / limit_n)
+        return domain if Fn < domain.Fn and Ft < domain.Ft + domain.slope * max(Fn, 0.0) else None
 
     def _onset(self, bond, k, R):
         """Force of an undamaged spring at which damage goes on: (4.18-4.19) solved for it."""
@@ -300,7 +300,7 @@ class ElastoPlasticSoftening(LinearBondLaw):
         # (R/k)/w = H/(H + k), in the form that H = inf leaves finite.
         self._loss_n, self._loss_t = 1.0 / (1.0 + self.kn / self.H), 1.0 / (1.0 + self.kt / self.H)
 
-    def tripwire(self, bond, Fn=0.0, Ft=0.0):
+    def elastic_domain(self, bond, Fn=0.0, Ft=0.0):
         """Of the rectangles in the ellipse the one whose corner is as many N from Fn as from Ft; under compression too
         strong for that, all of the shear strength and next to no tension."""
         size, u, v = 1.0 - bond.softening, self.Rn, self.Rt
@@ -311,9 +311,9 @@ class ElastoPlasticSoftening(LinearBondLaw):
         if root > 0.0:
             corner = max(corner, Fn + (math.sqrt(root) - b) / a)
         limit_t = v * math.sqrt(max(size * size - (corner / u) ** 2, 0.0))
-        wire = Tripwire(self.kn, self.kt, corner, limit_t)
+        domain = ElasticDomain(self.kn, self.kt, corner, limit_t)
         room = _NARROW * size
-        return wire if Fn < corner - room * u and Ft < limit_t - room * v else None
+        return domain if Fn < corner - room * u and Ft < limit_t - room * v else None
 
     def _bonded(self, bond, un, ut):
         Fn = self.kn * (un - bond.un_plastic)
@@ -472,7 +472,7 @@ class NonlinearElastoPlastic(BondLaw):
             Rn=self.Rn * factor, Rc=self.Rc * factor, tension=self.tension.scaled(factor),
             compression=self.compression.scaled(factor), shear=self.shear.scaled(factor), mu=self.mu)
 
-    def virgin(self):
+    def initial_state(self):
         """State of a new bond, free of stress."""
         return HardeningBond(self.kt)
 
@@ -526,7 +526,7 @@ def linear_law(name, *, kn, kt, Rn, Rt, H, mu):
     kn, kt  N/m      Rn, Rt  N      H  N/m      Raises ParameterError.
     """
     strength = dict(kn=kn, kt=kt, Rn=Rn, Rt=Rt, mu=mu)
-    require(name in LINEAR_LAWS, "law", name, f"one of {', '.join(LINEAR_LAWS)}")
+    require(name in LINEAR_LAWS, "bond_law", name, f"one of {', '.join(LINEAR_LAWS)}")
     return ElasticBrittle(**strength) if name == "brittle" else LINEAR_LAWS[name](H=H, **strength)
 
 

@@ -12,8 +12,8 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import Delaunay, cKDTree
 
-from .checks import positive, require
-from .outline import check_polygon, inside, nearest_on_edges, signed_distance
+from rockwear.kernels.checks import positive, require
+from rockwear.kernels.polygon import check_polygon, inside, nearest_on_edges, signed_distance
 
 PAIRS = 1_000_000
 """Most pairs of points and triangles looked at together in `distance`: some 500 MB of temporaries if all were near."""

@@ -12,7 +12,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.sparse.linalg import ArpackNoConvergence, eigsh, splu
 from scipy.spatial import cKDTree
 
-from rockwear.kernels.cells import cells
+from rockwear.kernels.voronoi import cells
 from rockwear.kernels.checks import ParameterError, not_negative, positive, require
 
 STEFAN_BOLTZMANN = 5.670374419e-8  # W/(m^2 K^4)
@@ -248,16 +248,16 @@ class HeatNetwork:
         free = self._response > 0
         count, part = connected_components(self._conduction, directed=False)
         holds = self._fixed | (self._convection > 0) | (self._radiation > 0)
-        held = np.bincount(part, holds, count) > 0
+        fixed = np.bincount(part, holds, count) > 0
         net = np.bincount(part, self._power, count)
         gross = np.bincount(part, abs(self._power), count)
-        drifts = ~held & (abs(net) > 1e-12 * gross)
+        drifts = ~fixed & (abs(net) > 1e-12 * gross)
         require(not drifts.any(), "source", float(net[drifts][0]) if drifts.any() else 0.0,
                 "0 in sum where no node is fixed, convects or radiates", "W")
 
         # A part that keeps its heat has its temperature only up to a constant: one node is held for the solution,
         # then the part is shifted to its own heat.
-        pinned = np.unique(part, return_index=True)[1][~held]
+        pinned = np.unique(part, return_index=True)[1][~fixed]
         free[pinned] = False
         free = np.flatnonzero(free)
         temperature = self._temperature.copy()
@@ -275,7 +275,7 @@ class HeatNetwork:
         kept = np.bincount(part, self._capacity * self._temperature, count)
         now = np.bincount(part, self._capacity * temperature, count)
         capacity = np.bincount(part, self._capacity, count)
-        shift = np.divide(kept - now, capacity, out=np.zeros(count), where=~held & (capacity > 0))
+        shift = np.divide(kept - now, capacity, out=np.zeros(count), where=~fixed & (capacity > 0))
         return temperature + shift[part]
 
     def state(self):

@@ -5,7 +5,7 @@ per m of width.
 """
 import math
 
-from .checks import not_negative, positive, require
+from rockwear.kernels.checks import not_negative, positive, require
 
 
 def evans(*, tensile_strength, depth, rake, friction_angle=0.0):

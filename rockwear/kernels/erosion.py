@@ -3,7 +3,7 @@ import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
-from .checks import ParameterError, require
+from rockwear.kernels.checks import ParameterError, require
 
 
 def depth_limit(radii, volumes, thickness=1.0):
@@ -31,7 +31,7 @@ class Erosion:
     """Worn volume on a particle body, and the removal of its particles.
 
     radii: (n,) m; volumes: (n,) m3, the part of the body's volume that each particle stands for; pairs: (m, 2)
-    particles that cover one another and hold together; skin: indices of particles open to wear at first; anchored:
+    particles that cover one another and hold together; surface: indices of particles open to wear at first; fixed:
     indices of those held by the shank; thickness: m, one or (n,), of what a particle stands for across: 1 in the plane,
     2 r for a sphere, whose face is then the square (2 r)^2; rule: "volume" (conserving: the excess over a particle's
     volume passes to what its removal uncovers, so that removed + stored = Archard's volume at every moment), "depth"
@@ -40,23 +40,23 @@ class Erosion:
     Raises ParameterError for an unknown rule, an index out of range, or volumes that are not positive.
     """
 
-    def __init__(self, *, radii, volumes, pairs, skin, anchored=(), rule="volume", thickness=1.0):
+    def __init__(self, *, radii, volumes, pairs, surface, fixed=(), rule="volume", thickness=1.0):
         require(rule in REMOVAL, "removal", rule, f"one of {', '.join(REMOVAL)}")
         self.radii, self.volumes = np.asarray(radii, float), np.asarray(volumes, float)
         require(self.volumes.size > 0 and np.all(self.volumes > 0), "volumes", float(np.min(self.volumes, initial=0)),
                 "greater than 0", "m3")
         count = len(self.volumes)
         self.pairs = np.asarray(pairs, int).reshape(-1, 2)
-        for name, indices in (("pairs", self.pairs), ("skin", np.asarray(skin)), ("anchored", np.asarray(anchored))):
+        for name, indices in (("pairs", self.pairs), ("surface", np.asarray(surface)), ("fixed", np.asarray(fixed))):
             if indices.size and not (0 <= indices.min() and indices.max() < count):
                 raise ParameterError(name, int(indices.max()), f"an index from 0 to {count - 1}")
         self.rule, self.conserving = rule, rule == "volume"
         self.limit = REMOVAL[rule](self.radii, self.volumes, thickness)
         self.areas = 2 * self.radii * thickness
-        self.anchored = np.zeros(count, bool)
-        self.anchored[np.asarray(anchored, int)] = True
+        self.fixed = np.zeros(count, bool)
+        self.fixed[np.asarray(fixed, int)] = True
         self.alive = np.ones(count, bool)
-        self.skin = set(int(i) for i in skin)
+        self.surface = set(int(i) for i in surface)
         self.stored = np.zeros(count)
         self.worn = np.zeros(count)
         self.archard_volume = 0.0
@@ -79,7 +79,7 @@ class Erosion:
         self.worn += volume
         self.stored += volume
         removed, uncovered = [], []
-        while worn_out := sorted(i for i in self.skin if self.stored[i] >= self.limit[i]):
+        while worn_out := sorted(i for i in self.surface if self.stored[i] >= self.limit[i]):
             newly = self._take(worn_out)
             removed += worn_out
             uncovered += newly
@@ -91,9 +91,9 @@ class Erosion:
 
     def _take(self, worn_out):
         self.alive[worn_out] = False
-        self.skin.difference_update(worn_out)
-        newly = sorted({j for i in worn_out for j in self._neighbours[i] if self.alive[j]} - self.skin)
-        self.skin.update(newly)
+        self.surface.difference_update(worn_out)
+        newly = sorted({j for i in worn_out for j in self._neighbours[i] if self.alive[j]} - self.surface)
+        self.surface.update(newly)
         return newly
 
     def _pass_on(self, worn_out, excess, newly):
@@ -115,19 +115,19 @@ class Erosion:
         return []
 
     def detached(self):
-        """Indices of living particles no longer connected with an anchored one (all of them when none is anchored)."""
+        """Indices of living particles no longer connected with an fixed one (all of them when none is fixed)."""
         alive = self.alive[self.pairs].all(axis=1)
         i, j = self.pairs[alive].T
         graph = coo_matrix((np.ones(len(i)), (i, j)), shape=(len(self.alive),) * 2)
         label = connected_components(graph, directed=False)[1]
-        held = np.unique(label[self.anchored & self.alive])
-        return np.flatnonzero(self.alive & ~np.isin(label, held))
+        fixed = np.unique(label[self.fixed & self.alive])
+        return np.flatnonzero(self.alive & ~np.isin(label, fixed))
 
     def drop(self, indices):
         """Take loose particles out of the body: they leave with their volume, which was not worn."""
         for i in indices:
             self.alive[i] = False
-            self.skin.discard(int(i))
+            self.surface.discard(int(i))
             # What was already worn off a loose particle stays booked as worn.
             self.lost_with_pieces += self.volumes[i] - self.stored[i]
             self.stored[i] = 0.0
@@ -156,12 +156,12 @@ class Erosion:
 
     def state(self):
         """What must survive a restart."""
-        return {"alive": self.alive.copy(), "skin": np.array(sorted(self.skin), int), "stored": self.stored.copy(), "worn": self.worn.copy(),
+        return {"alive": self.alive.copy(), "surface": np.array(sorted(self.surface), int), "stored": self.stored.copy(), "worn": self.worn.copy(),
                 "archard_volume": self.archard_volume, "lost_with_pieces": self.lost_with_pieces, "beyond": self.beyond}
 
     def restore(self, state):
         """Take back what `state` gave."""
         self.alive, self.stored, self.worn = (state[name].copy() for name in ("alive", "stored", "worn"))
-        self.skin = set(state["skin"].tolist())
+        self.surface = set(state["surface"].tolist())
         self.archard_volume, self.beyond = float(state["archard_volume"]), float(state["beyond"])
         self.lost_with_pieces = float(state["lost_with_pieces"])

@@ -18,7 +18,7 @@ from scipy.optimize import brentq
 from scipy.spatial import cKDTree
 from scipy.stats import qmc
 
-from rockwear.kernels import outline
+from rockwear.kernels import polygon as outline
 from rockwear.kernels.checks import ParameterError, positive, require, within
 
 SKIN = 0.6  # margin of the neighbour list, in least radii; a list lives until a particle has moved half of it
@@ -194,10 +194,10 @@ class _Energy:
         self.listed_at = None
 
     def _list(self, positions):
-        skin = SKIN * self.unit
+        surface = SKIN * self.unit
         self.listed_at = positions.copy()
-        self.pairs = contacts(positions, self.radii, skin, self.container.period)
-        self.at_wall = np.flatnonzero(self.container.depth(positions) < self.radii + skin)
+        self.pairs = contacts(positions, self.radii, surface, self.container.period)
+        self.at_wall = np.flatnonzero(self.container.depth(positions) < self.radii + surface)
 
     def __call__(self, flat):
         x = flat.reshape(len(self.radii), -1) * self.unit

@@ -6,8 +6,8 @@ edge breaks off.
 """
 import numpy as np
 
-from .boundary import altitudes, area_vectors, check_boundary, crossings, distance, ridges, volume
-from .checks import ParameterError
+from rockwear.kernels.boundary import altitudes, area_vectors, check_boundary, crossings, distance, ridges, volume
+from rockwear.kernels.checks import ParameterError
 
 CROWDED = 0.3
 """A facet crowds where its smallest altitude has fallen to this part of what it was at first."""
@@ -35,28 +35,28 @@ AGAIN = 0.9
 """A facet that could not be relieved is tried again when it has become so much smaller, or one beside it another."""
 OPERATIONS = 100
 """So many at one time; what still crowds waits for the next."""
-SHAPE = "vertices", "facets", "protected", "size", "place", "pending", "refused"
+SHAPE = "vertices", "facets", "fixed", "size", "place", "pending", "refused"
 CONNECTIONS = "joined", "around", "seam", "beside", "ways"
 
 
 class Mesh:
-    """A closed boundary of facets, parts of which are protected.
+    """A closed boundary of facets, parts of which are fixed.
 
-    vertices: (n, d) m; facets: (m, d), normals outwards; protected: (m,) bool, facets whose plane (line) stays.
+    vertices: (n, d) m; facets: (m, d), normals outwards; fixed: (m,) bool, facets whose plane (line) stays.
 
     `size` (m,) m is the smallest altitude that a facet had at first, `place` (m,) the number of the first facet on whose
     part of the surface it lies, `pending` (m,) m3 what is to be worn off it. `refused` (m,) is its altitude, as a part of
     its size, when it could not be relieved.
-    Raises ParameterError for a boundary that is open, folded, or not oriented outwards, or protected altogether.
+    Raises ParameterError for a boundary that is open, folded, or not oriented outwards, or fixed altogether.
     """
 
-    def __init__(self, *, vertices, facets, protected=None):
+    def __init__(self, *, vertices, facets, fixed=None):
         self.vertices, self.facets = check_boundary(vertices, facets)
         self.dimension = self.vertices.shape[1]
         m = len(self.facets)
-        self.protected = np.zeros(m, bool) if protected is None else np.array(protected, bool)
-        if self.protected.shape != (m,) or self.protected.all():
-            raise ParameterError("protected", f"{int(self.protected.sum())} of {m} facets",
+        self.fixed = np.zeros(m, bool) if fixed is None else np.array(fixed, bool)
+        if self.fixed.shape != (m,) or self.fixed.all():
+            raise ParameterError("fixed", f"{int(self.fixed.sum())} of {m} facets",
                                  "a flag for each facet that leaves at least one free")
         self.size = altitudes(self.vertices, self.facets)
         self.place, self.pending, self.refused = np.arange(m), np.zeros(m), np.full(m, np.inf)
@@ -76,9 +76,9 @@ class Mesh:
         self.ways = self._ways_left()
 
     def _ways_left(self):
-        """(n, d, d) projection of each vertex's motion on what its protected facets leave it: all for a vertex of none,
+        """(n, d, d) projection of each vertex's motion on what its fixed facets leave it: all for a vertex of none,
         their common plane or line for one on them, nothing for a corner of them."""
-        areas = area_vectors(self.vertices, self.facets) * self.protected[:, None]
+        areas = area_vectors(self.vertices, self.facets) * self.fixed[:, None]
         size = np.maximum(np.linalg.norm(areas, axis=1), np.finfo(float).tiny)
         values, frames = np.linalg.eigh(self.looks(areas / size[:, None], size))
         return np.einsum("nij,nj,nkj->nik", frames, values <= PLANE * values[:, -1:], frames)
@@ -206,7 +206,7 @@ class Mesh:
         origin = self.vertices[keep].copy()
         was = volume(self.vertices, self.facets[star], origin)
         left = np.flatnonzero(star & ~(has_keep & has_gone))
-        taking = left[~self.protected[left]] if not self.protected[left].all() else np.flatnonzero(~self.protected)
+        taking = left[~self.fixed[left]] if not self.fixed[left].all() else np.flatnonzero(~self.fixed)
         self.pending[taking] += self.pending[between].sum() / len(taking)
         self.facets[has_gone] = np.where(self.facets[has_gone] == gone, keep, self.facets[has_gone])
         return self._restore_volume(keep, left, origin, was) and self._split_longest(gone, between, part)
@@ -229,14 +229,14 @@ class Mesh:
         return bool(np.linalg.norm(step) < 0.5 * self.size[star].mean())
 
     def _split_longest(self, vertex, spare, part):
-        """Put `vertex` in the middle of the longest edge, for its facets' sizes, that is not all protected, with the
+        """Put `vertex` in the middle of the longest edge, for its facets' sizes, that is not all fixed, with the
         facets `spare` beside it."""
         d = self.dimension
         rest = np.setdiff1d(np.arange(len(self.facets)), spare)
         facets = self.facets[rest]
         sides = facets[:, None, :] if d == 2 else np.stack([facets, np.roll(facets, -1, axis=1)], axis=2)
         length = np.linalg.norm(self.vertices[sides[..., 1]] - self.vertices[sides[..., 0]], axis=2)
-        length = np.where(self.protected[rest, None], 0.0, length / self.size[rest, None])
+        length = np.where(self.fixed[rest, None], 0.0, length / self.size[rest, None])
         row, side = np.unravel_index(np.argmax(length), length.shape)
         if length[row, side] < 2 * WORTH * part:
             return False
@@ -247,7 +247,7 @@ class Mesh:
             corners = self.facets[old].copy()
             self.facets[old], self.facets[new] = (np.where(corners == end, vertex, corners) for end in (j, i))
             self.pending[old] *= 0.5
-            for values in (self.pending, self.protected, self.size, self.place):
+            for values in (self.pending, self.fixed, self.size, self.place):
                 values[new] = values[old]
         return True
 
@@ -258,7 +258,7 @@ class Mesh:
         holders = np.flatnonzero((self.facets == a).any(axis=1) & (self.facets == b).any(axis=1))
         behind = int(holders[holders != facet][0])
         e = self.facets[behind].sum() - a - b
-        if self.protected[behind] != self.protected[facet] or ((self.around[:, 0] == c) & (self.around[:, 1] == e)).any():
+        if self.fixed[behind] != self.fixed[facet] or ((self.around[:, 0] == c) & (self.around[:, 1] == e)).any():
             return False
         star = np.flatnonzero((self.facets == c).any(axis=1) | (np.arange(len(self.facets)) == behind))
         origin = self.vertices[c].copy()
@@ -280,7 +280,7 @@ class Mesh:
 
     def _is_sound(self, before, part):
         """Whether the facets that are another shape than `before` crowd less, lie where the surface was, have turned
-        little, protected ones not at all, and neither close a notch nor run through others."""
+        little, fixed ones not at all, and neither close a notch nor run through others."""
         vertices, facets = before["vertices"], before["facets"]
         other = (self.facets != facets).any(axis=1) | (self.vertices[self.facets] != vertices[facets]).any(axis=(1, 2))
         high = altitudes(self.vertices, self.facets[other]) / self.size[other]
@@ -296,8 +296,8 @@ class Mesh:
             area_vectors(self.vertices, self.facets), area_vectors(vertices, facets)))
         for k in np.flatnonzero(other):
             near = np.isin(facets, self.facets[k]).sum(axis=1) >= self.dimension - 1
-            least = 1 - 1e-10 if self.protected[k] else TURN
-            if not (were[near & (before["protected"] == self.protected[k])] @ normals[k] > least).any():
+            least = 1 - 1e-10 if self.fixed[k] else TURN
+            if not (were[near & (before["fixed"] == self.fixed[k])] @ normals[k] > least).any():
                 return False
         if self.notches(self.vertices, normals)[other[self.joined].any(axis=1)].any():
             return False

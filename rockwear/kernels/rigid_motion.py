@@ -1,6 +1,6 @@
 """Rigid motions of a tool in the plane, as exact functions of time: a straight cut, and a swinging cutter head.
 
-A motion has pose(t) -> Pose; velocity(t) -> (2,) m/s of the origin of the body's own frame, t in s; and `spin`, rad/s.
+A motion has pose(t) -> Pose; velocity(t) -> (2,) m/s of the origin of the body's own frame, t in s; and `angular_velocity`, rad/s.
 """
 import math
 from dataclasses import dataclass
@@ -29,7 +29,7 @@ class Pose:
 class Straight:
     """x(t) = start + v t. start: (2,) m; velocity: (2,) m/s."""
 
-    spin = 0.0
+    angular_velocity = 0.0
 
     def __init__(self, *, start, velocity):
         self.start, self.constant = np.asarray(start, float), np.asarray(velocity, float)
@@ -49,18 +49,18 @@ class SwingAndRotation:
     C is the centre as the pick sees it. A point at the distance R from the centre runs through a trochoid (P: a
     cycloid) at the circumferential velocity w R, to which the swing adds.
 
-    centre: c0, (2,) m; swing: u, (2,) m/s; spin: w, rad/s, positive counter-clockwise; start: a, rad;
+    centre: c0, (2,) m; swing: u, (2,) m/s; angular_velocity: w, rad/s, positive counter-clockwise; start: a, rad;
     pivot: C, (2,) m in the pick's own frame.
     """
 
-    def __init__(self, *, centre, swing, spin, pivot, start=0.0):
+    def __init__(self, *, centre, swing, angular_velocity, pivot, start=0.0):
         self.centre, self.swing, self.pivot = (np.asarray(p, float) for p in (centre, swing, pivot))
-        self.spin, self.start = spin, start
+        self.angular_velocity, self.start = angular_velocity, start
 
     def pose(self, t):
-        centre, turned = self.centre + self.swing * t, Pose(np.zeros(2), self.start + self.spin * t)
+        centre, turned = self.centre + self.swing * t, Pose(np.zeros(2), self.start + self.angular_velocity * t)
         return Pose(centre - turned.of([self.pivot])[0], turned.turn)
 
     def velocity(self, t):
         x, y = self.pose(t).offset - self.centre - self.swing * t
-        return self.swing + self.spin * np.array([-y, x])
+        return self.swing + self.angular_velocity * np.array([-y, x])

@@ -1,11 +1,11 @@
 """The tool alone under the mean load of its cut: how it warms up in minutes, and where that ends (M 11.3)."""
 import numpy as np
 
-from .conduction import HeatNetwork
+from rockwear.kernels.conduction import HeatNetwork
 
 
 def tool_under_load(*, capacity, paths, temperature, friction_heat, contact, rock_temperature, convection, ambient,
-                    root=(), root_temperature=None):
+                    shank=(), shank_temperature=None):
     """HeatNetwork of a tool that cuts steadily, from the means over a pass (M 11.3: "average heat generation rate").
 
     Each particle takes up its mean friction heat and gives heat to the rock it meets and to the air,
@@ -17,7 +17,7 @@ def tool_under_load(*, capacity, paths, temperature, friction_heat, contact, roc
 
     capacity (m,) J/K; paths: pairs (k, 2) and conductances (k,) W/K; temperature (m,) K at first; friction_heat (m,) W;
     contact (m,) W/K, G; rock_temperature (m,) K; convection (m,) W/K, hA; ambient: K of the air; root: particles
-    held at root_temperature, K. Raises ParameterError as HeatNetwork does; steady_state() does where a load has no way out.
+    held at shank_temperature, K. Raises ParameterError as HeatNetwork does; steady_state() does where a load has no way out.
     """
     network = HeatNetwork(capacity=capacity, edges=paths[0], conductance=paths[1], temperature=temperature)
     every = np.arange(len(network.temperature))
@@ -26,6 +26,6 @@ def tool_under_load(*, capacity, paths, temperature, friction_heat, contact, roc
     outside = np.divide(contact * rock_temperature + convection * ambient, whole,
                         out=np.full(every.size, float(ambient)), where=whole > 0)
     network.convect(every, whole, outside)
-    if len(root):
-        network.fix(root, root_temperature)
+    if len(shank):
+        network.fix(shank, shank_temperature)
     return network

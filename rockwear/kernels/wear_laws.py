@@ -28,7 +28,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import nnls
 
-from .checks import ParameterError, finite, not_negative, positive, require
+from rockwear.kernels.checks import ParameterError, finite, not_negative, positive, require
 
 NORMAL, FRICTION = "normal", "friction"
 """The forces a law may ask for: compression, and friction."""

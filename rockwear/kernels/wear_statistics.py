@@ -7,7 +7,7 @@ the tool goes.
 """
 import numpy as np
 
-from .outline import contour, nearest_arc
+from rockwear.kernels.polygon import contour, nearest_arc
 
 MIN_BLOCKS = 8
 """Fewer blocks of a record tell nothing of its scatter."""
@@ -77,7 +77,7 @@ def events_per_particle(*, events, worn, limit):
     return float(count[order][np.searchsorted(weight, 0.5 * weight[-1])])
 
 
-def trusted_acceleration(*, acceleration, error, events, tolerance):
+def trusted_wear_acceleration(*, wear_acceleration, error, events, tolerance):
     """Largest factor at which the same worn volume would have kept both of R's rules.
 
     A factor f' wears the same volume in f / f' of the time: the error of the distribution becomes error sqrt(f' / f),
@@ -85,7 +85,7 @@ def trusted_acceleration(*, acceleration, error, events, tolerance):
     known of the two; nan where the record says nothing.
     """
     with np.errstate(divide="ignore"):
-        return acceleration * float(np.fmin((tolerance / np.float64(error)) ** 2, events / ENOUGH_EVENTS))
+        return wear_acceleration * float(np.fmin((tolerance / np.float64(error)) ** 2, events / ENOUGH_EVENTS))
 
 
 def difference(first, second):

@@ -6,9 +6,9 @@ that takes away exactly a demanded volume is found to round-off.
 """
 import numpy as np
 
-from .boundary import altitudes, area_vectors, crossings, volume
-from .checks import within
-from .remeshing import EDGE, SHAPE, TURN, Mesh
+from rockwear.kernels.boundary import altitudes, area_vectors, crossings, volume
+from rockwear.kernels.checks import within
+from rockwear.kernels.remeshing import EDGE, SHAPE, TURN, Mesh
 
 STRIDE = 0.2
 """Longest way of a vertex at once, as a part of the smallest altitude around it."""
@@ -29,7 +29,7 @@ LEAST_PART = 0.02
 STEPS = 200
 """So many steps of at most a STRIDE in one update; what is still not done waits for the next."""
 ALONG = 0.03
-"""A vertex on the rim of the protected part gives way only where the worn facets look along the protected ones with
+"""A vertex on the rim of the fixed part gives way only where the worn facets look along the fixed ones with
 more than cos^2(80 degrees) of their weight."""
 ASTRAY = 0.02
 """A vertex that would win less than this part of its way goes back along its mean normal instead."""
@@ -50,11 +50,11 @@ class Folded(Exception):
 class WornBoundary(Mesh):
     """A closed boundary whose facets are worn: its vertices move inwards.
 
-    vertices, facets, protected: as for Mesh, the protected part being held (a shank); gone: the part of the volume at
+    vertices, facets, fixed: as for Mesh, the fixed part being held (a shank); gone: the part of the volume at
     which the body counts as worn away.
 
-    A protected facet is never worn and keeps its plane (its line). It gets shorter as the worn surface beside it
-    retreats: a vertex of worn and protected facets slides along the protected ones, to the corner where they end.
+    A fixed facet is never worn and keeps its plane (its line). It gets shorter as the worn surface beside it
+    retreats: a vertex of worn and fixed facets slides along the fixed ones, to the corner where they end.
 
     A vertex moves so that each facet around it recedes by its own depth, volume over area, as nearly as one motion
     can (least squares over the facets, weighted by area): an edge between a worn and a sound face slides down the
@@ -66,7 +66,7 @@ class WornBoundary(Mesh):
 
     An update that moves vertices takes all that is due, to round-off, in STEPS strides at most. Below LEAST_STRIDE
     nothing moves, and a later update makes up for it: what waits by then is less than LEAST_STRIDE times the area of
-    the worn facets times the largest of their altitudes. `pending` holds it by facet; `kept` is what fell on protected
+    the worn facets times the largest of their altitudes. `pending` holds it by facet; `kept` is what fell on fixed
     facets. `remeshed` counts the updates that changed which facets there are.
     """
 
@@ -87,8 +87,8 @@ class WornBoundary(Mesh):
         """
         demanded = np.asarray(demanded, float)
         self.archard_volume += float(demanded.sum())
-        self.kept += float(demanded[self.protected].sum())
-        self.pending += np.where(self.protected, 0.0, demanded)
+        self.kept += float(demanded[self.fixed].sum())
+        self.pending += np.where(self.fixed, 0.0, demanded)
         total = float(self.pending.sum())
         if total <= 0:
             return False
@@ -156,12 +156,12 @@ class WornBoundary(Mesh):
         return motion, weights, np.linalg.norm(motion, axis=1) / self._room()
 
     def _shares(self, areas):
-        """(m, d) of each facet's volume by its vertices: equal ones, but for vertices that what is protected holds."""
+        """(m, d) of each facet's volume by its vertices: equal ones, but for vertices that what is fixed holds."""
         d = self.dimension
-        worn = self.sum_at_vertices(np.repeat(areas * ~self.protected[:, None], d, axis=0))
+        worn = self.sum_at_vertices(np.repeat(areas * ~self.fixed[:, None], d, axis=0))
         way = np.einsum("nij,nj->ni", self.ways, worn)
         gives = np.einsum("ni,ni->n", way, way) > ALONG * np.einsum("ni,ni->n", worn, worn)
-        taking = gives[self.facets] & ~self.protected[:, None]
+        taking = gives[self.facets] & ~self.fixed[:, None]
         return taking / np.maximum(taking.sum(axis=1), 1)[:, None]
 
     def _over_dents(self, weights, gradient):
@@ -287,15 +287,15 @@ class WornBoundary(Mesh):
 
     def _spread(self, times):
         """Hand on what facets that would fold could not do: half of it to the facets around, and so on, `times`."""
-        giving = self._held_up[self.facets].any(axis=1) & ~self.protected
+        giving = self._held_up[self.facets].any(axis=1) & ~self.fixed
         corners, n = self.facets.ravel(), len(self.vertices)
-        facets_at = np.maximum(np.bincount(corners, (~self.protected).repeat(self.dimension), n), 1)
+        facets_at = np.maximum(np.bincount(corners, (~self.fixed).repeat(self.dimension), n), 1)
         for _ in range(times):
             given = 0.5 * self.pending * giving
             at_vertex = np.bincount(corners, (self.share * given[:, None]).ravel(), n) / facets_at
-            self.pending += np.where(self.protected, 0.0, at_vertex[self.facets].sum(axis=1)) - given
+            self.pending += np.where(self.fixed, 0.0, at_vertex[self.facets].sum(axis=1)) - given
 
-    # ---- books
+    # ---- balances
 
     @property
     def volume(self):
@@ -304,7 +304,7 @@ class WornBoundary(Mesh):
 
     def volume_balance(self):
         """The volume book in m3: what Archard's law wore, what the motion of vertices has taken, what waits, what fell
-        on protected facets; what broke off beside that; unexplained is what the volume enclosed now has lost else."""
+        on fixed facets; what broke off beside that; unexplained is what the volume enclosed now has lost else."""
         waiting = float(self.pending.sum())
         return {"archard": self.archard_volume, "removed": self.removed, "waiting": waiting,
                 "on_protected_facets": self.kept, "broken_off": self.broken_off,

@@ -6,16 +6,17 @@ Needs numpy, scipy and matplotlib, no YADE, so that a run can be looked at anywh
 """
 import matplotlib
 
-from . import cutting, dredging, heat, laboratory, plots, segments, space, temperatures, wear_test
-from .folder import RunFolder
-from .page import Section, parameters, whole_page, whole_results
+from rockwear.report import (
+    cutting, dredging, heat, laboratory, plots, segments, space, temperatures, sliding_wear as sliding_wear)
+from rockwear.report.folder import RunFolder
+from rockwear.report.page import Section, parameters, whole_page, whole_results
 
 
 def write(folder):
     """Draw figures/* and report.html of the run in `folder` from what is there already. -> path of the page."""
     run = RunFolder(folder)
     with matplotlib.rc_context(plots.STYLE):
-        kinds = space, temperatures, dredging, cutting, segments, laboratory, wear_test, heat
+        kinds = space, temperatures, dredging, cutting, segments, laboratory, sliding_wear, heat
         sections = next((kind.sections(run) for kind in kinds if kind.shows(run)), None) or general(run)
         text = whole_page(run, sections + [whole_results(run), parameters(run)])
     path = run.path / "report.html"
@@ -24,6 +25,6 @@ def write(folder):
 
 
 def general(run):
-    """Sections of a scene without a page of its own: its history and its books."""
+    """Sections of a scene without a page of its own: its history and its balances."""
     return [Section("History", "Every recorded quantity over time.", [plots.save(run, "history", plots.history(run))]),
-            plots.books(run)]
+            plots.balances(run)]

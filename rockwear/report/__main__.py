@@ -1,7 +1,7 @@
 """python3 -m rockwear.report FOLDER"""
 import sys
 
-from . import write
+from rockwear.report import write
 
 if len(sys.argv) != 2:
     sys.exit("usage: python3 -m rockwear.report FOLDER")

@@ -8,14 +8,14 @@ from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import LinearSegmentedColormap, LogNorm, Normalize, to_rgba
 from matplotlib.patches import Patch
 
-from ..kernels import wear_statistics
-from ..kernels.outline import contour
-from ..kernels.rigid_motion import Pose
-from . import shapes
-from .folder import read_history
-from .page import Section, image, machine_tiles, number, percent, quantity, table, tiles, words
-from .plots import (MM, MS, books, canvas, discs, frame, mark_stages, running_mean, save, spread, stage_name,
-                    working_hours)
+from rockwear.kernels import wear_statistics
+from rockwear.kernels.polygon import contour
+from rockwear.kernels.rigid_motion import Pose
+from rockwear.report import shapes
+from rockwear.report.folder import read_history
+from rockwear.report.page import Section, image, machine_tiles, number, percent, quantity, table, tiles, words
+from rockwear.report.plots import (
+    MM, MS, balances, canvas, discs, frame, mark_stages, running_mean, save, spread, stage_name, working_hours)
 
 ROCK, EDGE, SUPPORT, CRACK = "#e2d4b4", "#8d7d58", "#9a9a92", "#cc1414"
 STEEL, SKIN, PALE = "#7d868c", "#2f3a40", "#c3c9cd"
@@ -38,7 +38,7 @@ def sections(run):
 
     return [
         Section("Key results", summary_line(run), [key_results(run), stage_table(run)]),
-        Section("Set-up", "Grey discs are held. The tooth moves right; only its dark skin takes part in contact.",
+        Section("Set-up", "Grey discs are held. The tooth moves right; only its dark surface takes part in contact.",
                 [drawn(set_up)]),
         Section("The cut", "Red: broken bonds, drawn across the bond where its discs are still near each other. "
                 "Blue: chips, which no chain of bonds joins to the support. "
@@ -48,13 +48,13 @@ def sections(run):
                 "Thin lines are the record, thick ones a running mean. Each cycle begins on the rock that the start-up "
                 "left. The upper axis of the wear is the time that the accelerated wear stands for.", [drawn(history)]),
         Section("Temperature", "Rise above the coldest start, on a logarithmic scale.", [drawn(temperature)]),
-        Section("Wear of the tooth", "Depth worn off each skin particle that is left, and the particles that are gone, so "
+        Section("Wear of the tooth", "Depth worn off each surface particle that is left, and the particles that are gone, so "
                 "far.",
                 [drawn(wear)]),
         *trusted(run),
         Section("Shape of the tooth", "Dashed: the new tooth. Worn depth is the distance from the new contour to what "
                 "is left; arc length counts from the lowest point, positive up the front.", [drawn(shape)]),
-        books(run)]
+        balances(run)]
 
 
 # ---- numbers
@@ -75,7 +75,7 @@ def key_results(run):
         return label, quantity(run.result(name), unit), remark
 
     step, critical = run.result("time_step"), run.result("critical_time_step")
-    energy = run.summary.get("audits", {}).get("energy", {})
+    energy = run.summary.get("balances", {}).get("energy", {})
     tiles_shown = [
         tile("mean cutting force", "mean_cutting_force", "N/m"),
         tile("peak cutting force", "peak_cutting_force", "N/m"),
@@ -133,13 +133,13 @@ def tool_outlines(run, shot):
 
 def rock_colours(run, shot):
     """(n, 4) colour of each rock disc: sound, damaged, loose, held."""
-    bonds, held = run.model["bonds"], run.model["rock_supported"]
+    bonds, fixed = run.model["bonds"], run.model["rock_fixed"]
     count = len(run.model["rock_radii"])
     broken = np.bincount(bonds[shot["status"] != 0].ravel(), minlength=count)
     share = broken / np.maximum(np.bincount(bonds.ravel(), minlength=count), 1)
-    loose = shapes.chips(count, bonds, shot["status"] == 0, held)
+    loose = shapes.chips(count, bonds, shot["status"] == 0, fixed)
     colours = np.where(loose[:, None], LOOSE(share), DAMAGE(share))
-    colours[held] = to_rgba(SUPPORT)
+    colours[fixed] = to_rgba(SUPPORT)
     return colours
 
 
@@ -212,16 +212,16 @@ def arrow(axes, begin, end, text, style="<->", shift=(0, 5), **place):
 
 
 def set_up(run):
-    """Rock, support, tooth with its skin, motion, dimensions."""
+    """Rock, support, tooth with its surface, motion, dimensions."""
     shot = run.snapshot(0)
     model, (width, height) = run.model, MM * run.model["box"]
     positions, alive = moved_tool(run, shot)
     figure, (axes,) = canvas(9, 6.2)
     discs(axes, shot["rock_positions"], model["rock_radii"], linewidths=0.3, edgecolors=EDGE,
-          facecolors=np.where(model["rock_supported"][:, None], to_rgba(SUPPORT), to_rgba(ROCK)))
-    skin = np.isin(alive, shot["skin"])
+          facecolors=np.where(model["rock_fixed"][:, None], to_rgba(SUPPORT), to_rgba(ROCK)))
+    surface = np.isin(alive, shot["surface"])
     discs(axes, positions, model["tool_radii"][alive],
-          facecolors=np.where(skin[:, None], to_rgba(SKIN), to_rgba(PALE)))
+          facecolors=np.where(surface[:, None], to_rgba(SKIN), to_rgba(PALE)))
     outline = MM * pose(shot).of(model["outline"])
     left, top = min(0, outline[:, 0].min()), max(height, outline[:, 1].max())
     depth = MM * run.parameter("depth_of_cut", math.nan)
@@ -235,7 +235,7 @@ def set_up(run):
     arrow(axes, (0.08 * width, top - 8), (0.35 * width, top - 8), speed, "-|>", ha="center")
     frame(axes, (left - 6, width + 26, -14, top + 5))
     axes.legend(handles=[Patch(color=ROCK, label="bonded rock"), Patch(color=SUPPORT, label="held"),
-                         Patch(color=PALE, label="tool"), Patch(color=SKIN, label="its skin")], loc="lower left")
+                         Patch(color=PALE, label="tool"), Patch(color=SKIN, label="its surface")], loc="lower left")
     return figure
 
 
@@ -413,7 +413,7 @@ def trust_line(run):
             f"{quantity(run.result('simulated_time'), 's')}, its distribution along the tool {known}, and {piece} goes in "
             f"{number(run.result('contact_events_per_particle'))} contact events. For an error of "
             f"{percent(run.parameter('wear_tolerance', math.nan), 1.0)} and {wear_statistics.ENOUGH_EVENTS} events, "
-            f"accelerate at most {number(run.result('trusted_acceleration'))} times, and run as much longer.")
+            f"accelerate at most {number(run.result('trusted_wear_acceleration'))} times, and run as much longer.")
 
 
 def trust(run):
@@ -421,7 +421,7 @@ def trust(run):
     columns = read_history(run.path / "wear_profile.csv")[0]
     increments = np.column_stack(list(columns.values())) if columns else []
     deviation = wear_statistics.distribution_deviation(increments) if len(increments) else None
-    factor, error = run.parameter("acceleration", 0.0), run.result("wear_distribution_error")
+    factor, error = run.parameter("wear_acceleration", 0.0), run.result("wear_distribution_error")
     if deviation is None or not factor:
         return None
     worn = increments.sum(axis=0)
@@ -438,7 +438,7 @@ def trust(run):
                    label="contact events till a piece is gone")
     against.axhline(100 * run.parameter("wear_tolerance", math.nan), color="#2c6e91", linestyle=":")
     against.axhline(wear_statistics.ENOUGH_EVENTS, color="#b5651d", linestyle=":")
-    trusted = run.result("trusted_acceleration")
+    trusted = run.result("trusted_wear_acceleration")
     against.axvspan(factors[0], trusted, color="#e4efe0", zorder=-5, label="both of R's rules kept")
     against.axvline(factor, color="black", linewidth=1, label="this run")
     against.set(xlabel="acceleration of wear, at the same worn volume", xlim=factors[[0, -1]])

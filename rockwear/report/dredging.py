@@ -6,10 +6,11 @@ from matplotlib.colors import LogNorm, Normalize, to_rgba
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from .cutting import (CRACK, EDGE, PALE, ROCK, SKIN, SUPPORT, WARMTH, CutPicture, arrow, books, moved_tool,
-                      moving_picture, pose, worn_outlines)
-from .page import Section, machine_tiles, number, percent, quantity, table, tiles
-from .plots import MM, canvas, discs, frame, running_mean, save
+from rockwear.report.cutting import (
+    CRACK, EDGE, PALE, ROCK, SKIN, SUPPORT, WARMTH, CutPicture, arrow, balances, moved_tool, moving_picture, pose,
+    worn_outlines)
+from rockwear.report.page import Section, machine_tiles, number, percent, quantity, table, tiles
+from rockwear.report.plots import MM, canvas, discs, frame, running_mean, save
 
 CUT_TIMES = 0.01, 0.2, 0.4, 0.65
 """Instants of the first cut that P shows, s."""
@@ -54,7 +55,7 @@ def sections(run):
                 "positive up the rake face.", [drawn("shape", worn_outlines(run, after_cuts(run)))]),
         Section("Loss of mass (P fig. 18)", "Particles gone, and Archard's volume, which they follow.",
                 [drawn("mass_loss", mass_loss(run))]),
-        books(run)]
+        balances(run)]
 
 
 # ---- numbers
@@ -64,15 +65,15 @@ def summary_line(run):
     def value(name, unit):
         return quantity(run.parameter(name, math.nan), unit)
 
-    speed = run.parameter("spin", math.nan) * run.parameter("arm", math.nan)
+    speed = run.parameter("angular_velocity", math.nan) * run.parameter("cutter_radius", math.nan)
     return (f"{number(speed)} m/s around the axis, swing {value('swing', 'm/s')}, {run.parameter('cycles', 0)} turns, "
-            f"mechanics {value('speed_up', '-')} times as fast, wear accelerated {value('acceleration', '-')} times, "
-            f"rock discs {value('coarseness', '-')} times as coarse as P's.")
+            f"mechanics {value('time_scale', '-')} times as fast, wear accelerated {value('acceleration', '-')} times, "
+            f"rock discs {value('scale_factor', '-')} times as coarse as P's.")
 
 
 def key_results(run):
     """The numbers an engineer looks for first."""
-    energy = run.summary.get("audits", {}).get("energy", {})
+    energy = run.summary.get("balances", {}).get("energy", {})
     water = run.column("water_heat")
     to_water = f"{number(1e-3 * water[-1])} kJ/m" if len(water) and np.isfinite(water[-1]) else "none"
     shown = [
@@ -184,20 +185,20 @@ def instant(run, k):
 
 
 def set_up(run):
-    """Rock, support, pick with its skin, and the path of its tip."""
+    """Rock, support, pick with its surface, and the path of its tip."""
     shot, model = run.snapshot(0), run.model
     positions, alive = moved_tool(run, shot)
     left, right, bottom, top = limits(run)
     figure, (axes,) = canvas(10, 10 * (top - bottom) / (right - left) + 0.3)
     discs(axes, shot["rock_positions"], model["rock_radii"], linewidths=0.2, edgecolors=EDGE,
-          facecolors=np.where(model["rock_supported"][:, None], to_rgba(SUPPORT), to_rgba(ROCK)))
-    skin = np.isin(alive, shot["skin"])
+          facecolors=np.where(model["rock_fixed"][:, None], to_rgba(SUPPORT), to_rgba(ROCK)))
+    surface = np.isin(alive, shot["surface"])
     discs(axes, positions, model["tool_radii"][alive],
-          facecolors=np.where(skin[:, None], to_rgba(SKIN), to_rgba(PALE)))
+          facecolors=np.where(surface[:, None], to_rgba(SKIN), to_rgba(PALE)))
     axes.plot(*MM * model["own_path"].T, color=CRACK, linestyle="--", linewidth=1.2)
     axes.plot(*MM * model["free_surface"].T, color="#2c6e91", linewidth=1.2)
     tip_now = MM * pose(shot).of(model["outline"])[np.argmin(model["outline"][:, 1])]
-    speed = run.parameter("spin", math.nan) * run.parameter("arm", math.nan)
+    speed = run.parameter("angular_velocity", math.nan) * run.parameter("cutter_radius", math.nan)
     ahead = pose(shot).rotation @ (1.0, 0.0)
     below = tip_now - (0, 14)
     arrow(axes, below, below + 70 * ahead, f"{number(speed)} m/s", "-|>", (0, -6), ha="left", va="top")
@@ -205,7 +206,7 @@ def set_up(run):
     arrow(axes, (left + 15, top - 15), (left + 75, top - 15), f"swing {swing}", "-|>", ha="center")
     frame(axes, (left, right, bottom, top))
     axes.legend(handles=[Patch(color=ROCK, label="bonded rock"), Patch(color=SUPPORT, label="held"),
-                         Patch(color=PALE, label="pick"), Patch(color=SKIN, label="its skin"),
+                         Patch(color=PALE, label="pick"), Patch(color=SKIN, label="its surface"),
                          Line2D([], [], color=CRACK, linestyle="--", label="path of the tip"),
                          Line2D([], [], color="#2c6e91", label="path of the pick before")], loc="lower right")
     return figure

@@ -3,8 +3,8 @@ from collections import namedtuple
 
 import numpy as np
 
-from .page import Section, machine_tiles, number, percent, table, tiles, words
-from .plots import books, canvas, discs, save
+from rockwear.report.page import Section, machine_tiles, number, percent, table, tiles, words
+from rockwear.report.plots import balances, canvas, discs, save
 
 MARKS = {"random": ("o", "#b0522a"), "square": ("s", "#3b7fb0"), "triangular": ("^", "#4a8a3c")}
 DOTS = 150
@@ -38,7 +38,7 @@ def sections(run):
                 [drawn("convergence", convergence(cases, errors))]),
         Section("Temperatures", "The discs at the last instant, coloured from the lowest to the highest temperature.",
                 [drawn("temperatures", temperatures(run, shown))]),
-        books(run)]
+        balances(run)]
 
 
 def read_cases(run):

@@ -3,9 +3,9 @@ import numpy as np
 from matplotlib.collections import LineCollection
 from matplotlib.colors import LinearSegmentedColormap, to_rgba
 
-from . import shapes
-from .page import Section, machine_tiles, number, percent, quantity, tiles
-from .plots import MM, books, canvas, discs, frame, history, save
+from rockwear.report import shapes
+from rockwear.report.page import Section, machine_tiles, number, percent, quantity, tiles
+from rockwear.report.plots import MM, balances, canvas, discs, frame, history, save
 
 ROCK, GRIP, CRACK = "#e2d4b4", "#9a9a92", "#cc1414"
 SOFTENED = LinearSegmentedColormap.from_list("softened", [ROCK, "#8f5a24"])
@@ -15,7 +15,7 @@ ARROWS = 900
 
 def shows(run):
     """True for a run with a specimen between platens and at least one snapshot."""
-    return bool({"rock_led", "rock_radii", "bonds"} <= run.model.keys() and len(run.times))
+    return bool({"rock_prescribed", "rock_radii", "bonds"} <= run.model.keys() and len(run.times))
 
 
 def sections(run):
@@ -32,7 +32,7 @@ def sections(run):
                 "Right: broken bonds in red, drawn across the bond; the darker a disc, the softer its bonds; "
                 "grey discs are led by the platens.", [drawn(failure)]),
         Section("History", "Every recorded quantity over time.", [drawn(history)]),
-        books(run)]
+        balances(run)]
 
 
 def key_results(run):
@@ -40,7 +40,7 @@ def key_results(run):
     def tile(label, name, unit, remark=""):
         return label, quantity(run.result(name), unit), remark
 
-    book = run.summary.get("audits", {}).get("energy", {})
+    balance = run.summary.get("balances", {}).get("energy", {})
     failed = run.result("failed")
     return tiles([
         tile("strength" if failed else "peak stress, not failed", "peak_stress", "Pa",
@@ -49,7 +49,7 @@ def key_results(run):
         tile("Poisson's ratio", "poissons_ratio", "-"),
         tile("tensile cracks", "tensile_cracks", "-", f"{number(run.result('tensile_cracks_at_peak'))} at the peak"),
         tile("shear cracks", "shear_cracks", "-", f"{number(run.result('shear_cracks_at_peak'))} at the peak"),
-        ("energy not accounted for", percent(book.get("residual", np.nan), book.get("platen_work", 0.0)),
+        ("energy not accounted for", percent(balance.get("residual", np.nan), balance.get("platen_work", 0.0)),
          "of the platens' work"),
         *machine_tiles(run)])
 
@@ -91,7 +91,7 @@ def failure(run):
     softness = np.bincount(model["bonds"].ravel(), np.repeat(shot["softening"], 2), len(radii))
     softness /= np.maximum(np.bincount(model["bonds"].ravel(), minlength=len(radii)), 1)
     colours = SOFTENED(np.clip(softness, 0, 1))
-    colours[model["rock_led"]] = to_rgba(GRIP)
+    colours[model["rock_prescribed"]] = to_rgba(GRIP)
     discs(right, places, radii, facecolors=colours)
     broken = model["bonds"][shot["status"] != 0]
     right.add_collection(LineCollection(MM * shapes.cracks(places, radii, broken), colors=CRACK, linewidths=1))

@@ -1,9 +1,9 @@
-"""Figures any scene can use: discs, time series with their stages, and the books as bars and tables."""
+"""Figures any scene can use: discs, time series with their stages, and the balances as bars and tables."""
 import numpy as np
 from matplotlib.collections import EllipseCollection
 from matplotlib.figure import Figure
 
-from .page import SHOWN, Section, beside, image, number, percent, table, words
+from rockwear.report.page import SHOWN, Section, beside, image, number, percent, table, words
 
 STYLE = {"font.size": 10, "axes.titlesize": 11, "axes.spines.top": False, "axes.spines.right": False,
          "axes.grid": False, "figure.facecolor": "white", "savefig.dpi": 110, "legend.frameon": False}
@@ -64,7 +64,7 @@ def mark_stages(run, axes, named=False):
 
 def working_hours(run, axes, time):
     """An upper axis of the hours that the accelerated wear stands for; they rest while a worn tool comes to the rock."""
-    hours = run.column("working_time") * run.parameter("acceleration", 0.0) / 3600
+    hours = run.column("working_time") * run.parameter("wear_acceleration", 0.0) / 3600
     if not np.isfinite(hours + time).all() or not hours.max(initial=0) > 0:
         return
     # From the first moment on, and at the same rate beyond the last.
@@ -103,21 +103,21 @@ def history(run):
 
 def energy_bars(run):
     """Where the work put in went, in per cent of it; what the account misses stands apart in red."""
-    book = run.summary.get("audits", {}).get("energy", {})
-    source = next((name for name in book if name.endswith("_work")), None)
-    work = book.get(source, 0.0)
-    items = [(name, value) for name, value in book.items() if name not in ("unit", source, "residual")]
+    balance = run.summary.get("balances", {}).get("energy", {})
+    source = next((name for name in balance if name.endswith("_work")), None)
+    work = balance.get(source, 0.0)
+    items = [(name, value) for name, value in balance.items() if name not in ("unit", source, "residual")]
     if not work or not np.isfinite(work) or not items:
         return None
-    items = sorted(items, key=lambda item: np.nan_to_num(item[1])) + [("residual", book.get("residual", np.nan))]
+    items = sorted(items, key=lambda item: np.nan_to_num(item[1])) + [("residual", balance.get("residual", np.nan))]
     share = np.array([100 * value / work for _, value in items])
     figure, (axes,) = canvas(9, 0.6 + 0.36 * len(items))
     axes.barh(range(len(items)), np.nan_to_num(share), color=["#b08d57"] * (len(items) - 1) + ["#cc2222"])
     for place, (name, value) in enumerate(items):
         axes.text(max(0, np.nan_to_num(share[place])), place, va="center",
-                  s=f"  {percent(value, work)}   {number(value)} {book['unit']}")
+                  s=f"  {percent(value, work)}   {number(value)} {balance['unit']}")
     axes.set_yticks(range(len(items)), [words(name) for name, _ in items])
-    axes.set(xlabel=f"% of the {words(source)}, {number(work)} {book['unit']}",
+    axes.set(xlabel=f"% of the {words(source)}, {number(work)} {balance['unit']}",
              xlim=(min(0, 1.1 * np.nanmin(share)), max(1, 1.35 * np.nanmax(share))))
     return figure
 
@@ -125,20 +125,20 @@ def energy_bars(run):
 REFERENCES = {"mass": "archard", "heat": "generated", "energy": "tool_work"}
 
 
-def book_table(run, name):
+def balance_table(run, name):
     """A book of summary.json, each entry also in per cent of the book's reference."""
-    book = run.summary.get("audits", {}).get(name)
-    if not book:
+    balance = run.summary.get("balances", {}).get(name)
+    if not balance:
         return ""
     reference = REFERENCES.get(name)
-    whole = book.get(reference, 0.0)
-    rows = [(words(entry), number(value), percent(value, whole)) for entry, value in book.items() if entry != "unit"]
-    return table(rows, ("", book["unit"], f"of {words(reference)}" if reference else ""), name)
+    whole = balance.get(reference, 0.0)
+    rows = [(words(entry), number(value), percent(value, whole)) for entry, value in balance.items() if entry != "unit"]
+    return table(rows, ("", balance["unit"], f"of {words(reference)}" if reference else ""), name)
 
 
-def books(run):
-    """Section of the books: energy as bars, the others as tables."""
-    others = [name for name in run.summary.get("audits", {}) if name != "energy"]
+def balances(run):
+    """Section of the balances: energy as bars, the others as tables."""
+    others = [name for name in run.summary.get("balances", {}) if name != "energy"]
     heat = " Heat counts from 0 K: a particle that is removed takes all it holds with it." if "heat" in others else ""
-    return Section("Books", "Where the work went" + (", and the other books." if others else ".") + heat,
-                   [save(run, "energy", energy_bars(run)), beside(*(book_table(run, name) for name in others))])
+    return Section("Books", "Where the work went" + (", and the other balances." if others else ".") + heat,
+                   [save(run, "energy", energy_bars(run)), beside(*(balance_table(run, name) for name in others))])

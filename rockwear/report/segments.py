@@ -2,12 +2,13 @@
 import numpy as np
 from matplotlib import colormaps
 
-from ..kernels.boundary import distance
-from ..kernels.outline import contour, nearest_arc
-from . import shapes
-from .cutting import CRACK, cut, draw_cracks, draw_energy, draw_forces, moving_picture, summary_line, trusted, worn_stages
-from .page import Section, machine_tiles, percent, quantity, tiles
-from .plots import MM, MS, books, canvas, frame, mark_stages, save, working_hours
+from rockwear.kernels.boundary import distance
+from rockwear.kernels.polygon import contour, nearest_arc
+from rockwear.report import shapes
+from rockwear.report.cutting import (
+    CRACK, cut, draw_cracks, draw_energy, draw_forces, moving_picture, summary_line, trusted, worn_stages)
+from rockwear.report.page import Section, machine_tiles, percent, quantity, tiles
+from rockwear.report.plots import MM, MS, balances, canvas, frame, mark_stages, save, working_hours
 
 
 def shows(run):
@@ -32,7 +33,7 @@ def sections(run):
         *([Section("Shape of the tool", "Dashed: the new tool. Each point is a vertex.", [drawn(shape)])]
           if run.parameter("reshape", False) else []),
         Section("History", "Thin lines are the record, thick ones a running mean.", [drawn(history)]),
-        books(run)]
+        balances(run)]
 
 
 def key_results(run):
@@ -40,7 +41,7 @@ def key_results(run):
     def tile(label, name, unit, remark=""):
         return label, quantity(run.result(name), unit), remark
 
-    energy = run.summary.get("audits", {}).get("energy", {})
+    energy = run.summary.get("balances", {}).get("energy", {})
     return tiles([
         tile("mean cutting force", "mean_cutting_force", "N/m"), tile("peak cutting force", "peak_cutting_force", "N/m"),
         tile("mean thrust force", "mean_thrust_force", "N/m"), tile("specific energy", "specific_energy", "J/m3"),
@@ -70,7 +71,7 @@ def along(run):
 def wear(run):
     """Depth worn off along the outline at several stages, and on the tool."""
     middle, length, normal, arc = along(run)
-    free = ~run.model["tool_protected"]
+    free = ~run.model["tool_fixed"]
     order = np.argsort(arc)
     order = order[free[order]]
     shown = worn_stages(run, 8)

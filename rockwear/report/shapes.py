@@ -4,7 +4,7 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import Delaunay, QhullError, cKDTree
 
-from ..kernels.outline import contour
+from rockwear.kernels.polygon import contour
 
 ALPHA = 2.2
 """Gaps whose rim fits on a circle of this many mean radii are closed, as in kernels.surface."""
@@ -109,10 +109,10 @@ def pieces(count, pairs, intact):
     return connected_components(coo_matrix((np.ones(len(i)), (i, j)), shape=(count, count)), directed=False)[1]
 
 
-def chips(count, pairs, intact, held):
+def chips(count, pairs, intact, fixed):
     """(n,) bool: discs that no chain of intact bonds joins to a held one (to the largest part, if none is held)."""
     label = pieces(count, pairs, intact)
-    anchors = label[held] if np.any(held) else [np.argmax(np.bincount(label))]
+    anchors = label[fixed] if np.any(fixed) else [np.argmax(np.bincount(label))]
     return ~np.isin(label, anchors)
 
 

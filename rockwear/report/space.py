@@ -9,11 +9,11 @@ from matplotlib.colors import LinearSegmentedColormap, Normalize, to_rgb
 from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
-from ..kernels.boundary import area_vectors, distance
-from . import shapes
-from .cutting import CRACK, DAMAGE, LOOSE, PALE, STEEL, SUPPORT, trusted
-from .page import Section, machine_tiles, number, percent, quantity, tiles
-from .plots import MM, books, canvas, frame as limits, running_mean, save, spread
+from rockwear.kernels.boundary import area_vectors, distance
+from rockwear.report import shapes
+from rockwear.report.cutting import CRACK, DAMAGE, LOOSE, PALE, STEEL, SUPPORT, trusted
+from rockwear.report.page import Section, machine_tiles, number, percent, quantity, tiles
+from rockwear.report.plots import MM, balances, canvas, frame as limits, running_mean, save, spread
 
 CORNERS = 14
 """Of the polygon that stands for a sphere."""
@@ -53,7 +53,7 @@ def sections(run):
         Section("Shape of the tooth at stages, and the particles removed", "Red: removed particles, where they were.",
                 [drawn(stages_of_wear)]),
         *trusted(run),
-        books(run)]
+        balances(run)]
 
 
 def loose(run):
@@ -79,13 +79,13 @@ def summary_line(run):
         return quantity(run.parameter(name, math.nan), unit)
 
     return (f"{value('velocity', 'm/s')}, depth of cut {value('depth_of_cut', 'm')}, "
-            f"{quantity(run.result('simulated_time'), 's')} simulated, radii {number(run.result('coarsening'))} times those "
+            f"{quantity(run.result('simulated_time'), 's')} simulated, radii {number(run.result('scale_factor'))} times those "
             "of the source.")
 
 
 def key_results(run):
     """The numbers an engineer looks for first."""
-    energy = run.summary.get("audits", {}).get("energy", {})
+    energy = run.summary.get("balances", {}).get("energy", {})
     step, critical = run.result("time_step"), run.result("critical_time_step")
     wears = run.result("worn_volume") > 0
     if has_particles(run):
@@ -154,19 +154,19 @@ def paint(axes, *parts, edge=0.35, frame=None):
 
 def rock_colours(run, shot):
     """(n, 3) of the rock's spheres."""
-    model, held = run.model, run.model["rock_supported"]
+    model, fixed = run.model, run.model["rock_fixed"]
     if loose(run):
         moved = np.linalg.norm(shot["rock_positions"] - run.snapshot(settled(run))["rock_positions"], axis=1)
         colours = colormaps["YlOrBr"](np.clip(moved / (4 * model["rock_radii"]), 0.08, 0.9))[:, :3]
     else:
         bonds, gone = model["bonds"], shot["status"] != 0
-        count = len(held)
+        count = len(fixed)
         every = np.bincount(bonds.ravel(), minlength=count)
         broken = np.bincount(bonds[gone].ravel(), minlength=count) / np.maximum(every, 1)
         colours = DAMAGE(broken)[:, :3]
-        chip = shapes.chips(count, bonds, ~gone, held)
+        chip = shapes.chips(count, bonds, ~gone, fixed)
         colours[chip] = LOOSE(broken[chip])[:, :3]
-    colours[held] = to_rgb(SUPPORT)
+    colours[fixed] = to_rgb(SUPPORT)
     return colours
 
 
@@ -181,8 +181,8 @@ def tooth_parts(run, shot, view, nearer=np.inf):
     if not has_particles(run):
         return facet_polygons(shot["tool_vertices"] + place, shot["tool_facets"], view)
     shown = np.zeros(len(run.model["tool_radii"]), bool)
-    shown[shot["skin"]] = True
-    shown |= run.model["tool_mounted"] & shot["alive"]
+    shown[shot["surface"]] = True
+    shown |= run.model["tool_fixed"] & shot["alive"]
     if np.isfinite(nearer):
         shown = shot["alive"] & (run.model["tool_positions"][:, 2] < nearer)
         shown &= run.model["tool_positions"][:, 2] > nearer - 2.5 * run.model["tool_radii"]
@@ -218,10 +218,10 @@ def views(*size):
 
 def in_sight(run):
     """(n,) bool, rock to show from above: all but the two sides of a box that hide the loose fill."""
-    radii, held = run.model["rock_radii"], run.model["rock_supported"]
+    radii, fixed = run.model["rock_radii"], run.model["rock_fixed"]
     width, _, depth = run.model["block"]
     x, _, z = run.snapshot(0)["rock_positions"].T
-    return ~(loose(run) & held & ((z > 0.5 * depth - 2.5 * radii) | (x > width - 2.5 * radii)))
+    return ~(loose(run) & fixed & ((z > 0.5 * depth - 2.5 * radii) | (x > width - 2.5 * radii)))
 
 
 def perspective(run):
@@ -306,10 +306,10 @@ def wear_scale(run):
 
 
 def worn_tooth(axes, run, shot, norm, view):
-    """The tooth's skin in the colour of its worn depth."""
-    skin = shot["skin"]
-    colours = WEAR(norm(MM * shot["worn_depth"][skin]))
-    part = sphere_polygons(run.model["tool_positions"][skin], run.model["tool_radii"][skin], colours, view)
+    """The tooth's surface in the colour of its worn depth."""
+    surface = shot["surface"]
+    colours = WEAR(norm(MM * shot["worn_depth"][surface]))
+    part = sphere_polygons(run.model["tool_positions"][surface], run.model["tool_radii"][surface], colours, view)
     paint(axes, part, edge=0.15)
 
 
@@ -392,13 +392,13 @@ def sections_of_tool(run, panels):
 
 
 def wear_over_height(run):
-    """Largest and mean worn depth of the particles that were skin, over the height above the tip."""
+    """Largest and mean worn depth of the particles that were surface, over the height above the tip."""
     if not worn(run):
         return None
     shot, places, radii = run.snapshot(-1), run.model["tool_positions"], run.model["tool_radii"]
-    skin, radius = shot["skin"], float(radii[0])
-    row = np.floor((places[skin, 1]) / (2 * radius)).astype(int)
-    depth = MM * shot["worn_depth"][skin]
+    surface, radius = shot["surface"], float(radii[0])
+    row = np.floor((places[surface, 1]) / (2 * radius)).astype(int)
+    depth = MM * shot["worn_depth"][surface]
     rows = np.unique(row)
     height = MM * 2 * radius * (rows + 0.5)
     figure, (axes,) = canvas(7, 3.4)
@@ -423,8 +423,8 @@ def stages_of_wear(run):
         shot = run.snapshot(k)
         worn_tooth(axes, run, shot, norm, (50.0, 12.0))
         axes.set_title(f"t = {number(run.times[k])} s")
-        gone, skin = ~shot["alive"], shot["skin"]
-        parts = [sphere_polygons(places[skin], radii[skin], np.tile(to_rgb(PALE), (len(skin), 1)), (50.0, 12.0))]
+        gone, surface = ~shot["alive"], shot["surface"]
+        parts = [sphere_polygons(places[surface], radii[surface], np.tile(to_rgb(PALE), (len(surface), 1)), (50.0, 12.0))]
         if gone.any():
             # Drawn nearer than they were, so that none is hidden by the tooth.
             nearness, polygons, colours = sphere_polygons(places[gone], radii[gone], np.tile(to_rgb(CRACK), (gone.sum(), 1)),

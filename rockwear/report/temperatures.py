@@ -1,10 +1,10 @@
 """Figures of a tooth at several speeds: its tip's temperature over time, its fields, transient and quasi-stationary."""
 import numpy as np
 
-from . import cutting
-from .folder import read_history
-from .page import Section, number, quantity, table
-from .plots import MM, canvas, discs, frame, save
+from rockwear.report import cutting
+from rockwear.report.folder import read_history
+from rockwear.report.page import Section, number, quantity, table
+from rockwear.report.plots import MM, canvas, discs, frame, save
 
 KELVIN = 273.15
 COLOURS = ("#c8252c", "#e08a1e", "#2c6e91", "#5b8c3a", "#6b4c9a")
@@ -33,7 +33,7 @@ def sections(run):
                 "the mean load from there on. Dotted: where it ends. Steel softens from some 300 °C on and has no "
                 "hardness in the table above 600 °C: lines up there say that the tool would not hold, not how hot it gets.",
                 [drawn(tip_over_time)]),
-        Section("Tool at each speed", "After the pass, and where the mean load leads; each picture has its own scale.",
+        Section("Tool at each speed", "After the pass, and where the mean load approach_steps; each picture has its own scale.",
                 [drawn(fields)]),
         Section("Rock and tool after the passes", "Near the tip, rise above the first temperature.",
                 [drawn(near_the_tip)]),
@@ -59,9 +59,9 @@ def speed_table(run, names):
 
 def wear_table(run):
     """Wear of the last passes, from either field."""
-    rows = [(f"from the field of the {root} root", quantity(run.result(f"worn_volume_from_{root}_root"), "m3/m"),
-             f"{number(100 * run.result(f'mass_lost_from_{root}_root'))} %") for root in ("fixed", "insulated")
-            if np.isfinite(run.result(f"worn_volume_from_{root}_root"))]
+    rows = [(f"from the field of the {shank} root", quantity(run.result(f"worn_volume_from_{shank}_root"), "m3/m"),
+             f"{number(100 * run.result(f'mass_lost_from_{shank}_root'))} %") for shank in ("fixed", "insulated")
+            if np.isfinite(run.result(f"worn_volume_from_{shank}_root"))]
     header = f"wear at {run.parameter('wear_velocity', 0)} m/s", "by Archard's law", "mass lost"
     return table(rows, header) if rows else ""
 
@@ -77,11 +77,11 @@ def tip_over_time(run):
         if here.any():
             passed = (time[here] - time[stage < k].max()) * run.parameter("velocity", 1.0) / float(u)
             axes.plot(passed, hottest[here] - start, color=colour, linewidth=3, label=f"{u} m/s")
-        for root, style in (("insulated", "-"), ("fixed", "--")):
-            axes.plot(columns[f"time_{root}_{u}"], columns[f"{root}_{u}"] - start, color=colour, linestyle=style,
+        for shank, style in (("insulated", "-"), ("fixed", "--")):
+            axes.plot(columns[f"time_{shank}_{u}"], columns[f"{shank}_{u}"] - start, color=colour, linestyle=style,
                       linewidth=1)
-            axes.axhline(run.result(f"hottest_{root}_root_{u}") - start, color=colour, linestyle=":", linewidth=1,
-                         xmin=0.93 if root == "insulated" else 0.9)
+            axes.axhline(run.result(f"hottest_{shank}_root_{u}") - start, color=colour, linestyle=":", linewidth=1,
+                         xmin=0.93 if shank == "insulated" else 0.9)
     axes.plot([], [], color="black", linewidth=1, label="mean load, root insulated")
     axes.plot([], [], color="black", linestyle="--", linewidth=1, label="mean load, root held")
     soft = 600 + KELVIN - start

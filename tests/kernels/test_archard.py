@@ -2,7 +2,7 @@
 import numpy as np
 import pytest
 
-from rockwear.kernels.archard import (BRINELL, MET71, MET91, Hardness, wear_coefficient, wear_rate)
+from rockwear.kernels.archard import BRINELL, MET71, MET91, Hardness, wear_coefficient, wear_rate
 from rockwear.kernels.checks import ParameterError
 
 TABLE = [0, 200, 300, 400, 500, 600]

@@ -4,8 +4,8 @@ import math
 import numpy as np
 import pytest
 
-from rockwear.kernels.bond_laws import (ElasticBrittle, ElasticDamage, ElastoPlasticSoftening, Hyperbolic,
-                                        NonlinearElastoPlastic, Parabolic)
+from rockwear.kernels.bond_laws import (
+    ElasticBrittle, ElasticDamage, ElastoPlasticSoftening, Hyperbolic, NonlinearElastoPlastic, Parabolic)
 from rockwear.kernels.checks import ParameterError
 
 KN, KT, RN, RT, H, MU = 2e10, 1e10, 1e5, 6e4, 1e10, 0.839
@@ -45,7 +45,7 @@ def line(u, k, R, H):
 
 def follow(law, un, ut):
     """Forces, stored energy and states along a path; ut has a row per step and a column per component."""
-    bond, forces, stored, states = law.virgin(), [], [], []
+    bond, forces, stored, states = law.initial_state(), [], [], []
     for opening, shift in zip(un.tolist(), ut.tolist()):
         Fn, Ft = law.respond(bond, opening, tuple(shift))
         forces.append((Fn, *Ft))
@@ -108,7 +108,7 @@ def test_unloading_in_shear_reverses_and_softens_on_both_sides():
 
 @pytest.mark.parametrize("law", [law for law in LAWS.values() if getattr(law, "Rc", math.inf) == math.inf])
 def test_compression_is_elastic_and_leaves_the_bond_whole(law):
-    bond = law.virgin()
+    bond = law.initial_state()
     for u in (-1e-7, -5e-6, -1e-3, -2e-6):
         assert law.respond(bond, u, (0.0,))[0] == pytest.approx(law.kn * u, rel=1e-12)
     assert bond.softening == 0.0
@@ -189,7 +189,7 @@ def test_broken_bond_is_a_coulomb_contact(name):
 
 def test_damaged_bond_hands_over_its_own_force():
     law = ElasticDamage(**SOFT)
-    bond = law.virgin()
+    bond = law.initial_state()
     law.respond(bond, 10e-6, (0.0,))                    # omega = 3/4
     assert bond.softening == pytest.approx(0.75)
     _, (before,) = law.respond(bond, -50e-6, (9.5e-6,))
@@ -427,7 +427,7 @@ def test_turning_state_and_displacement_on_the_way_turns_the_force(law, turn_at)
     """What the engine does when a contact rotates: the vectors named by the state are turned with ut."""
     for seed in range(5):
         un, ut = random_path(seed, 2, legs=3)
-        still, turned = law.virgin(), law.virgin()
+        still, turned = law.initial_state(), law.initial_state()
         for step, (opening, (a, b)) in enumerate(zip(un.tolist(), ut.tolist())):
             if step == turn_at:
                 for name in turned.vectors:
@@ -441,49 +441,49 @@ def test_turning_state_and_displacement_on_the_way_turns_the_force(law, turn_at)
 
 @pytest.mark.parametrize("name", ["brittle", "damage", "damage by tension only"])
 def test_the_tripwire_of_a_virgin_bond_is_its_strength(name):
-    wire = LAWS[name].tripwire(LAWS[name].virgin())
-    assert wire == (KN, KT, RN, RT, 0.0)
+    domain = LAWS[name].elastic_domain(LAWS[name].initial_state())
+    assert domain == (KN, KT, RN, RT, 0.0)
 
 
 def test_the_tripwire_of_a_virgin_elastoplastic_bond_has_its_corner_on_the_ellipse():
-    wire = LAWS["elasto-plastic"].tripwire(LAWS["elasto-plastic"].virgin())
-    assert wire.Fn == pytest.approx(wire.Ft, rel=1e-12)
-    assert (wire.Fn / RN) ** 2 + (wire.Ft / RT) ** 2 == pytest.approx(1.0, rel=1e-12)
+    domain = LAWS["elasto-plastic"].elastic_domain(LAWS["elasto-plastic"].initial_state())
+    assert domain.Fn == pytest.approx(domain.Ft, rel=1e-12)
+    assert (domain.Fn / RN) ** 2 + (domain.Ft / RT) ** 2 == pytest.approx(1.0, rel=1e-12)
 
 
 def test_a_law_that_is_nowhere_linear_has_no_tripwire():
     law = NonlinearElastoPlastic()
-    assert law.tripwire(law.virgin()) is None
+    assert law.elastic_domain(law.initial_state()) is None
 
 
 @pytest.mark.parametrize("name", ["brittle", "damage", "damage by tension only", "elasto-plastic"])
 @pytest.mark.parametrize("seed", range(10))
 def test_inside_the_tripwire_a_bond_is_linear_wherever_it_has_been(name, seed):
-    """On the way along a random path: forces anywhere within the wire are those of constant springs."""
+    """On the way along a random path: forces anywhere within the domain are those of constant springs."""
     law, rng = LAWS[name], np.random.default_rng(100 + seed)
     un, ut = random_path(seed, 1, steps=60)
-    bond, wires = law.virgin(), 0
+    bond, wires = law.initial_state(), 0
     for opening, shift in zip(un.tolist(), ut[:, 0].tolist()):
         Fn, (Ft,) = law.respond(bond, opening, (shift,))
         if bond.broken:
             break
-        wire = law.tripwire(bond, Fn, abs(Ft))
-        if wire is None:
+        domain = law.elastic_domain(bond, Fn, abs(Ft))
+        if domain is None:
             continue
         wires += 1
-        assert Fn <= wire.Fn and abs(Ft) <= wire.Ft + wire.slope * Fn
-        assert wire.kn * (opening - bond.un_plastic) == pytest.approx(Fn, rel=1e-9, abs=TOLERANCE * RN)
-        assert wire.kt * (shift - bond.ut_plastic[0]) == pytest.approx(Ft, rel=1e-9, abs=TOLERANCE * RN)
+        assert Fn <= domain.Fn and abs(Ft) <= domain.Ft + domain.slope * Fn
+        assert domain.kn * (opening - bond.un_plastic) == pytest.approx(Fn, rel=1e-9, abs=TOLERANCE * RN)
+        assert domain.kt * (shift - bond.ut_plastic[0]) == pytest.approx(Ft, rel=1e-9, abs=TOLERANCE * RN)
         for compression in rng.uniform(0.0, 5 * RN, 4):
-            for normal in (wire.Fn * rng.uniform(), wire.Fn * (1 - 1e-12), -compression):
-                limit = min(wire.Ft + wire.slope * normal, 20 * RT)
+            for normal in (domain.Fn * rng.uniform(), domain.Fn * (1 - 1e-12), -compression):
+                limit = min(domain.Ft + domain.slope * normal, 20 * RT)
                 if limit < 0.0:
                     continue
                 shear = limit * rng.uniform(-1.0, 1.0) * rng.choice([1.0, 1 - 1e-12])
-                copy = law.virgin()
+                copy = law.initial_state()
                 for field in ("softening", "un_plastic", "ut_plastic"):
                     setattr(copy, field, getattr(bond, field))
-                answer = law.respond(copy, bond.un_plastic + normal / wire.kn, (bond.ut_plastic[0] + shear / wire.kt,))
+                answer = law.respond(copy, bond.un_plastic + normal / domain.kn, (bond.ut_plastic[0] + shear / domain.kt,))
                 assert_close(answer[0], normal)
                 assert_close(answer[1][0], shear)
                 assert copy.softening <= bond.softening + 1e-12

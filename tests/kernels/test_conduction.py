@@ -4,10 +4,11 @@ import pytest
 from scipy.spatial import cKDTree
 
 from rockwear.kernels import analytic
-from rockwear.kernels import cells as voronoi
+from rockwear.kernels import voronoi as voronoi
 from rockwear.kernels.checks import ParameterError
-from rockwear.kernels.conduction import (PATHS, HeatNetwork, bar_conductance, calibrated_conductance,
-                                         effective_conductivity, effusivity, effusivity_share, paths)
+from rockwear.kernels.conduction import (
+    PATHS, HeatNetwork, bar_conductance, calibrated_conductance, effective_conductivity, effusivity,
+    effusivity_share, paths)
 
 
 def chain(n, conductance=1.0, capacity=1.0, temperature=300.0):
@@ -216,7 +217,7 @@ def test_radiating_particle_settles_where_it_gives_off_what_it_gets():
     assert network.steady_state() == pytest.approx([(300.0**4 + 1000.0 / 0.1 / 5.670374419e-8) ** 0.25])
 
 
-# ---- the books
+# ---- the balances
 
 def test_heat_balance_closes_to_round_off():
     network = tangle()
@@ -229,10 +230,10 @@ def test_heat_balance_closes_to_round_off():
     network.rewire(edges=[[3, 4], [4, 5], [5, 2]], conductance=7.0)
     network.fix(4, 900.0)
     network.advance(20.0)
-    book = network.balance
-    assert book["removed"] == -carried and all(abs(value) > 1 for value in book.values())
-    scale = max(map(abs, book.values()))
-    assert network.heat_content - before == pytest.approx(sum(book.values()), abs=1e-11 * scale + 1e-12 * before)
+    balance = network.balance
+    assert balance["removed"] == -carried and all(abs(value) > 1 for value in balance.values())
+    scale = max(map(abs, balance.values()))
+    assert network.heat_content - before == pytest.approx(sum(balance.values()), abs=1e-11 * scale + 1e-12 * before)
 
 
 def test_each_entry_of_the_book_alone():
@@ -488,7 +489,7 @@ def test_lone_particles():
     assert network.temperature.tolist() == network.steady_state().tolist() == [300.0, 400.0, 500.0]
 
 
-# ---- hard cases: stable, bounded, books closed
+# ---- hard cases: stable, bounded, balances closed
 
 def one_contact(network_of):
     """Two particles, capacities 1e4 apart."""
@@ -536,8 +537,8 @@ def test_hard_cases_stay_bounded_and_keep_their_books(case, steps):
             there = network.present
             network.convect(there, 2 * state["convection"][there] + 1e-3, 283.0)
             network.radiate(there, 2 * state["radiation"][there], 280.0)
-    book = network.balance
-    assert network.heat_content - content == pytest.approx(sum(book.values()), abs=1e-12 * content)
+    balance = network.balance
+    assert network.heat_content - content == pytest.approx(sum(balance.values()), abs=1e-12 * content)
 
 
 def test_what_nothing_holds_together_keeps_its_temperature():

@@ -8,8 +8,8 @@ from rockwear.kernels.cutting_theory import evans, mohr_coulomb, nishimatsu
 
 
 def test_evans_with_a_vertical_face():
-    root = math.sqrt(0.5)
-    assert evans(tensile_strength=7e6, depth=0.01, rake=0.0) == pytest.approx(2 * 7e4 * root / (1 - root), rel=1e-12)
+    shank = math.sqrt(0.5)
+    assert evans(tensile_strength=7e6, depth=0.01, rake=0.0) == pytest.approx(2 * 7e4 * shank / (1 - shank), rel=1e-12)
 
 
 def test_evans_friction_blunts_the_wedge():

@@ -2,11 +2,10 @@
 import numpy as np
 import pytest
 
-from rockwear.kernels import outline
+from rockwear.kernels import polygon as outline
 from rockwear.kernels import packing as kernel
 from rockwear.kernels.checks import ParameterError
-from rockwear.kernels.packing import (contacts, coordination, mean_overlap, pack, porosity, separation, tile,
-                                      volumes)
+from rockwear.kernels.packing import contacts, coordination, mean_overlap, pack, porosity, separation, tile, volumes
 
 GRAINS = {"radius_min": 1e-3, "radius_max": 1.5e-3}
 SPECIMEN = {**GRAINS, "box": (0.109, 0.109), "porosity": 0.12, "seed": 1}

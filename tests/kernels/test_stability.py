@@ -29,20 +29,20 @@ def energy_stiffness(positions, radii, bonds, kn, kt):
     """K as the Hessian of the bonds' energy: an independent way, each bond by the relative motion at its contact."""
     x = np.asarray(positions, dtype=float)
     n, d = x.shape
-    spin = 1 if d == 2 else 3
-    stiffness = np.zeros((n * (d + spin),) * 2)
+    angular_velocity = 1 if d == 2 else 3
+    stiffness = np.zeros((n * (d + angular_velocity),) * 2)
     for i, j in bonds:
         normal = (x[j] - x[i]) / np.linalg.norm(x[j] - x[i])
         half = 0.5 * (radii[i] + radii[j] - np.linalg.norm(x[j] - x[i]))
         point = x[i] + (radii[i] - half) * normal
         motion = []  # velocity of j's material at the contact against that of i's
         for body, sign in ((i, -1.0), (j, 1.0)):
-            arm = point - x[body]
-            turn = np.array([[-arm[1]], [arm[0]]]) if d == 2 else np.cross(np.eye(3), arm).T
+            cutter_radius = point - x[body]
+            turn = np.array([[-cutter_radius[1]], [cutter_radius[0]]]) if d == 2 else np.cross(np.eye(3), cutter_radius).T
             motion.append(sign * np.hstack([np.eye(d), turn]))
         motion = np.hstack(motion)
         projector = np.outer(normal, normal)
-        dofs = np.add.outer(np.array([i, j]) * (d + spin), np.arange(d + spin)).ravel()
+        dofs = np.add.outer(np.array([i, j]) * (d + angular_velocity), np.arange(d + angular_velocity)).ravel()
         stiffness[np.ix_(dofs, dofs)] += motion.T @ (kn * projector + kt * (np.eye(d) - projector)) @ motion
     return stiffness
 
@@ -60,7 +60,7 @@ def test_two_discs_one_bond():
 
 @pytest.mark.parametrize("distance", [0.9, 1.0, 1.2])
 def test_arms_reach_to_the_middle_of_overlap_or_gap(distance):
-    """Discs alike: arm a = ½ distance, whatever the radius."""
+    """Discs alike: cutter_radius a = ½ distance, whatever the radius."""
     expected = 2 / math.sqrt(2 * 2e10 / 3 + 2 * 2e10 * (distance / 2) ** 2 / 0.375)
     assert equal_discs([[0, 0], [distance, 0]], [[0, 1]], kt=2e10) == pytest.approx(expected, rel=1e-5)
 
@@ -104,8 +104,8 @@ def test_against_the_hessian(dimensions):
     s = specimen(dimensions)
     kn, kt = 2e10, 6e9
     k = energy_stiffness(s["positions"], s["radii"], s["bonds"], kn, kt)
-    root = 1 / np.sqrt(lumped(s["masses"], s["inertias"], dimensions))
-    values = np.linalg.eigvalsh(k * root * root[:, None])
+    shank = 1 / np.sqrt(lumped(s["masses"], s["inertias"], dimensions))
+    values = np.linalg.eigvalsh(k * shank * shank[:, None])
     exact = 2 / math.sqrt(values[-1])
     assert critical_time_step(**s, kn=kn, kt=kt) == pytest.approx(exact, rel=2e-6)
     assert critical_time_step(**s, kn=kn, kt=kt) <= exact

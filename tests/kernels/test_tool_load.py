@@ -17,8 +17,8 @@ def at(place, value):
 
 
 def test_a_bar_with_a_held_root_rises_linearly():
-    network = tool_under_load(**BAR, friction_heat=at(0, 60.0), contact=np.zeros(N), convection=np.zeros(N), root=[N - 1],
-                              root_temperature=310.0)
+    network = tool_under_load(**BAR, friction_heat=at(0, 60.0), contact=np.zeros(N), convection=np.zeros(N), shank=[N - 1],
+                              shank_temperature=310.0)
     assert network.steady_state() == pytest.approx(310 + 60 / H * np.arange(N - 1, -1, -1), rel=1e-12)
 
 

@@ -4,8 +4,8 @@ import pytest
 
 from rockwear.kernels.archard import wear_rate
 from rockwear.kernels.checks import ParameterError
-from rockwear.kernels.wear_laws import (FRICTION, NORMAL, DissipationArchard, LaboratoryTest, PowerLaw, PressureArchard,
-                                        SumOfModes, wear_law)
+from rockwear.kernels.wear_laws import (
+    FRICTION, NORMAL, DissipationArchard, LaboratoryTest, PowerLaw, PressureArchard, SumOfModes, wear_law)
 
 MU, K, H = 0.3, 0.0113, 5e9
 AREA = np.array([0.8e-3, 1.0e-3, 0.9e-3])

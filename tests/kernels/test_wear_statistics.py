@@ -2,8 +2,8 @@
 import numpy as np
 import pytest
 
-from rockwear.kernels.wear_statistics import (MIN_BLOCKS, difference, distribution_error, events_per_particle,
-                                              trusted_acceleration)
+from rockwear.kernels.wear_statistics import (
+    MIN_BLOCKS, difference, distribution_error, events_per_particle, trusted_wear_acceleration)
 
 
 def record(generator, spans, burst=1, places=8):
@@ -48,12 +48,12 @@ def test_events_count_by_worn_volume():
 
 
 def test_trust_follows_both_rules():
-    common = dict(acceleration=1000.0, tolerance=0.1)
-    assert trusted_acceleration(error=0.2, events=1e9, **common) == pytest.approx(250)
-    assert trusted_acceleration(error=1e-9, events=5.0, **common) == pytest.approx(500)
+    common = dict(wear_acceleration=1000.0, tolerance=0.1)
+    assert trusted_wear_acceleration(error=0.2, events=1e9, **common) == pytest.approx(250)
+    assert trusted_wear_acceleration(error=1e-9, events=5.0, **common) == pytest.approx(500)
     # A record too short for the first rule is still judged by the second.
-    assert trusted_acceleration(error=np.nan, events=5.0, **common) == pytest.approx(500)
-    assert np.isnan(trusted_acceleration(error=np.nan, events=np.nan, **common))
+    assert trusted_wear_acceleration(error=np.nan, events=5.0, **common) == pytest.approx(500)
+    assert np.isnan(trusted_wear_acceleration(error=np.nan, events=np.nan, **common))
 
 
 def test_difference_of_distributions():

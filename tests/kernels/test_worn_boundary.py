@@ -5,10 +5,11 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from rockwear.kernels.boundary import (altitudes, area_vectors, check_boundary, crossings, distance, nearest_on_triangle, prism,
-                                       refine, segments, volume)
+from rockwear.kernels.boundary import (
+    altitudes, area_vectors, check_boundary, crossings, distance, nearest_on_triangle, prism, refine, segments,
+    volume)
 from rockwear.kernels.checks import ParameterError
-from rockwear.kernels.outline import tooth
+from rockwear.kernels.polygon import tooth
 from rockwear.kernels.remeshing import CROWDED, Mesh
 from rockwear.kernels.worn_boundary import LEAST_STRIDE, STRIDE, Folded, WornAway, WornBoundary
 
@@ -114,7 +115,7 @@ def test_damaged_outlines_are_refused(facets, words):
 def test_a_tool_without_a_free_facet_is_refused():
     vertices, facets = cube()
     with pytest.raises(ParameterError, match="at least one free"):
-        WornBoundary(vertices=vertices, facets=facets, protected=np.ones(len(facets), bool))
+        WornBoundary(vertices=vertices, facets=facets, fixed=np.ones(len(facets), bool))
 
 
 # ---- meshes
@@ -258,7 +259,7 @@ def battered(boundary, centre, reach, part, chance):
     return demanded * part * boundary.first_volume / demanded.sum()
 
 
-def held(vertices, facets):
+def fixed(vertices, facets):
     top, back = vertices[:, 1] > vertices[:, 1].max() - 1e-9, vertices[:, 0] < vertices[:, 0].min() + 1e-9
     return top[facets].all(axis=1) | back[facets].all(axis=1)
 
@@ -272,10 +273,10 @@ def worn_down_to(left, boundary, reach):
         before, broken = boundary.volume, boundary.broken_off
         boundary.wear(demanded)
         lost = before - boundary.volume - (boundary.broken_off - broken)
-        assert lost == pytest.approx(demanded[~boundary.protected].sum(), rel=1e-9)
+        assert lost == pytest.approx(demanded[~boundary.fixed].sum(), rel=1e-9)
         assert sharpest(boundary) > min(-0.9, sharp)
     check_boundary(boundary.vertices, boundary.facets)
-    there = boundary.vertices[boundary.facets[boundary.protected]]
+    there = boundary.vertices[boundary.facets[boundary.fixed]]
     top, back = (abs(there[..., 1] - first[:, 1].max()) < 1e-15), (abs(there[..., 0] - first[:, 0].min()) < 1e-15)
     assert (top.all(axis=1) | back.all(axis=1)).all() and top.any() and back.any()
     assert abs(boundary.volume_balance()["unexplained"]) < 1e-12 * boundary.first_volume
@@ -284,13 +285,13 @@ def worn_down_to(left, boundary, reach):
 @pytest.mark.parametrize("segment, reach", [(1e-3, 5e-3), (2e-3, 10e-3), (1e-3, 15e-3), (2e-3, 20e-3), (1e-3, 25e-3)])
 def test_heavy_uneven_wear_folds_nothing_in_the_plane(segment, reach):
     vertices, facets = refine(*segments(TOOTH), segment)
-    worn_down_to(0.52, WornBoundary(vertices=vertices, facets=facets, protected=held(vertices, facets)), reach)
+    worn_down_to(0.52, WornBoundary(vertices=vertices, facets=facets, fixed=fixed(vertices, facets)), reach)
 
 
 @pytest.mark.parametrize("size, left", [(5e-3, 0.7), (3e-3, 0.9)])
 def test_heavy_uneven_wear_folds_nothing_in_space(size, left):
     vertices, facets = prism(TOOTH, 0.02, size)
-    worn_down_to(left, WornBoundary(vertices=vertices, facets=facets, protected=held(vertices, facets)), 0.02)
+    worn_down_to(left, WornBoundary(vertices=vertices, facets=facets, fixed=fixed(vertices, facets)), 0.02)
 
 
 @pytest.mark.parametrize("make, depth", [(lambda: refine(*segments(TOOTH), 0.5e-3), 5e-6),
@@ -300,12 +301,12 @@ def test_heavy_uneven_wear_folds_nothing_in_space(size, left):
 def test_a_clearance_face_worn_evenly_stays_a_face_that_meets_the_back(make, depth):
     """Exact: the half-plane beyond the line 10 mm inside the old face is gone, what else there was is left."""
     vertices, facets = make()
-    boundary = WornBoundary(vertices=vertices, facets=facets, protected=held(vertices, facets))
+    boundary = WornBoundary(vertices=vertices, facets=facets, fixed=fixed(vertices, facets))
     outward = np.array([-math.sin(math.radians(3)), -math.cos(math.radians(3)), 0.0][:boundary.dimension])
 
     def face():
         areas = area_vectors(boundary.vertices, boundary.facets) @ outward
-        return np.where(~boundary.protected & (areas > 0.8 * sizes(boundary)), areas, 0.0)
+        return np.where(~boundary.fixed & (areas > 0.8 * sizes(boundary)), areas, 0.0)
 
     for _ in range(500):
         before, demanded = boundary.volume + boundary.broken_off, 2e-5 * face()
@@ -315,7 +316,7 @@ def test_a_clearance_face_worn_evenly_stays_a_face_that_meets_the_back(make, dep
     gone = (vertices @ outward).max() - corners @ outward
     assert gone[corners[:, 0] < -15e-3] == pytest.approx(0.01, abs=depth)
     # The back keeps its line (plane), and ends where the face meets it.
-    back = boundary.vertices[boundary.facets[boundary.protected]].reshape(-1, boundary.dimension)
+    back = boundary.vertices[boundary.facets[boundary.fixed]].reshape(-1, boundary.dimension)
     back = back[back[:, 0] < -0.0449]
     assert back[:, 0] == pytest.approx(-0.045, abs=1e-15)
     assert back[:, 1].min() == pytest.approx(vertices[vertices[:, 0] < -0.0449, 1].min() + 0.01 / math.cos(math.radians(3)),
@@ -326,7 +327,7 @@ def test_a_clearance_face_worn_evenly_stays_a_face_that_meets_the_back(make, dep
 @pytest.mark.parametrize("make", [lambda: refine(*segments(BLADE), 1e-3), lambda: prism(BLADE, 0.01, 2e-3)])
 def test_a_blade_worn_through_from_both_sides_ends_before_its_faces_cross(make):
     vertices, facets = make()
-    boundary = WornBoundary(vertices=vertices, facets=facets, protected=(vertices[facets, 1] > BLADE[:, 1].max() - 1e-9).all(axis=1))
+    boundary = WornBoundary(vertices=vertices, facets=facets, fixed=(vertices[facets, 1] > BLADE[:, 1].max() - 1e-9).all(axis=1))
     away = vertices[facets].mean(axis=1) - [0, 0.01, 0][:vertices.shape[1]]
     sides = abs(area_vectors(vertices, facets)[:, 0]) * np.exp(-((away / 3e-3)**2)[:, 1:].sum(axis=1))
     with pytest.raises(Folded, match="worn through"):
@@ -340,18 +341,18 @@ def test_a_blade_worn_through_from_both_sides_ends_before_its_faces_cross(make):
 @pytest.mark.parametrize("make", [lambda: refine(*segments(SQUARE), 1e-3), cube])
 def test_a_vertex_of_worn_and_protected_facets_slides_along_the_protected_ones(make):
     vertices, facets = make()
-    boundary = WornBoundary(vertices=vertices, facets=facets, protected=(vertices[facets, 0] < 1e-9).all(axis=1))
-    count = int(boundary.protected.sum())
+    boundary = WornBoundary(vertices=vertices, facets=facets, fixed=(vertices[facets, 0] < 1e-9).all(axis=1))
+    count = int(boundary.fixed.sum())
     for _ in range(40):
         upward = np.maximum(area_vectors(boundary.vertices, boundary.facets)[:, 1], 0)
-        boundary.wear(upward * 1e-4 * ~boundary.protected + 1e-12 * boundary.protected)
+        boundary.wear(upward * 1e-4 * ~boundary.fixed + 1e-12 * boundary.fixed)
     assert 20e-12 * count < boundary.kept < 40.1e-12 * count
     assert boundary.removed == pytest.approx(0.4 * boundary.first_volume, rel=1e-2)
     assert boundary.removed + boundary.pending.sum() + boundary.kept == pytest.approx(boundary.archard_volume, rel=1e-9)
-    wall = boundary.vertices[boundary.facets[boundary.protected]].reshape(-1, boundary.dimension)
+    wall = boundary.vertices[boundary.facets[boundary.fixed]].reshape(-1, boundary.dimension)
     assert wall[:, 0] == pytest.approx(0.0, abs=1e-15) and wall[:, 1].max() == pytest.approx(0.006, abs=1e-5)
     # What is missed there has gone where it was: no face is without.
-    assert boundary.protected.sum() < count and (altitudes(boundary.vertices, boundary.facets) > 0.2 * boundary.size).all()
+    assert boundary.fixed.sum() < count and (altitudes(boundary.vertices, boundary.facets) > 0.2 * boundary.size).all()
 
 
 @pytest.mark.parametrize("make, off", [(lambda: refine(*segments(TOOTH), 1e-3), 1e-8), (cube, 5e-5)])
@@ -403,11 +404,11 @@ def test_a_feather_edge_breaks_off_and_is_no_wear(make, reach):
 
 def test_what_waits_is_less_than_the_least_stride_of_a_layer_of_facets():
     vertices, facets = refine(*segments(TOOTH), 1e-3)
-    boundary = WornBoundary(vertices=vertices, facets=facets, protected=held(vertices, facets))
+    boundary = WornBoundary(vertices=vertices, facets=facets, fixed=fixed(vertices, facets))
     chance, moved = np.random.default_rng(5), 0
     for _ in range(300):
         moved += boundary.wear(battered(boundary, [0, 0], 0.01, 1e-8, chance))
-        worn = ~boundary.protected
+        worn = ~boundary.fixed
         layer = sizes(boundary)[worn].sum() * altitudes(boundary.vertices, boundary.facets)[worn].max()
         assert boundary.pending.sum() < LEAST_STRIDE * layer
     assert 2 < moved < 150
@@ -419,12 +420,12 @@ def test_a_little_wear_of_single_large_facets_leaves_no_round_off_that_cannot_mo
     chance = np.random.default_rng(22 + seed)
     vertices, facets = prism(TOOTH, 0.05, 0.02)
     vertices = vertices + np.array([0.3, 0.1, 0.2]) * chance.uniform(-1, 1)
-    boundary = WornBoundary(vertices=vertices, facets=facets, protected=held(vertices, facets))
+    boundary = WornBoundary(vertices=vertices, facets=facets, fixed=fixed(vertices, facets))
     for _ in range(20):
-        demanded, one = np.zeros(len(facets)), chance.choice(np.flatnonzero(~boundary.protected))
+        demanded, one = np.zeros(len(facets)), chance.choice(np.flatnonzero(~boundary.fixed))
         demanded[one] = sizes(boundary)[one] * altitudes(boundary.vertices, boundary.facets)[one] * 10**chance.uniform(-4, -3)
         boundary.wear(demanded)
-        assert not boundary.pending[boundary.protected].any()
+        assert not boundary.pending[boundary.fixed].any()
     # What is less than the least stride waits.
     assert boundary.removed > 0.95 * boundary.archard_volume
 

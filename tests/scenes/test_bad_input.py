@@ -3,9 +3,9 @@ import os
 
 import pytest
 
-from .conftest import ROOT, SMALL, arguments, run_script
+from tests.running import ROOT, SMALL, arguments, run_script
 
-SCRIPT = ROOT / "yade_scripts/test_tooth.py"
+SCRIPT = ROOT / "yade_scripts/tooth_cycles.py"
 
 CASES = [
     ({"kn": -20e9}, "kn = -2e+10 N/m: must be greater than 0"),
@@ -24,7 +24,7 @@ CASES = [
     ({"width": 0.008}, "must be at most the specimen's width 0.008"),
     ({"bonding_gap": -1e-4}, "bonding_gap = -0.0001 m: must be at least 0"),
     ({"bonding_gap": 0.01}, "bonding_gap = 0.01 m: must be at most radius_min = 0.0015"),
-    ({"coarsening": 0.5}, "coarsening = 0.5: must be at least 1"),
+    ({"grading_factor": 0.5}, "grading_factor = 0.5: must be at least 1"),
     ({"seed": 1.5}, "seed = 1.5: must be a whole number"),
     ({"cycles": -1}, "cycles = -1: must be a whole number of at least 0"),
     ({"velocity": 0}, "velocity = 0 m/s: must be greater than 0"),
@@ -131,5 +131,5 @@ def test_a_checkpoint_belongs_to_the_contents_of_its_files(tmp_path):
 def test_help_lists_every_parameter_with_its_source():
     run = run_script(SCRIPT, "--help")
     assert run.code == 0
-    for words in ("--kn 20000000000.0 [N/m]", "--acceleration 7000.0", "(M 9.2)", "--out"):
+    for words in ("--kn 20000000000.0 [N/m]", "--wear_acceleration 7000.0", "(M 9.2)", "--out"):
         assert words in run.stdout

@@ -3,7 +3,7 @@ import json
 
 import pytest
 
-from .conftest import ROOT, SMALL, arguments, run_script
+from tests.running import ROOT, SMALL, arguments, run_script
 
 
 @pytest.fixture(scope="module")

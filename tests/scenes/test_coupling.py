@@ -4,7 +4,7 @@ import signal
 import numpy as np
 import pytest
 
-from .conftest import checks_of, interrupt, test_tooth
+from tests.running import checks_of, interrupt, tooth_cycles
 
 HOT = dict(rock_expansion=1e-3, start_up=6e-4, cycles=1, cycle_time=3e-4, checkpoint_interval=0.01, heat_period=2e-5)
 """A hundred times the rock's expansion, so that it tells."""
@@ -25,14 +25,14 @@ def test_free_heating_leaves_no_stress(found):
 
 
 def test_heating_between_two_ends_gives_E_alpha_dtheta(found):
-    held = found["constrained"]
-    assert held["uniaxial"] == pytest.approx(held["E_alpha_dT"], rel=1e-4)
-    assert held["packing_heated"] == pytest.approx(held["packing_pressed"], rel=5e-4)
+    fixed = found["constrained"]
+    assert fixed["uniaxial"] == pytest.approx(fixed["E_alpha_dT"], rel=1e-4)
+    assert fixed["packing_heated"] == pytest.approx(fixed["packing_pressed"], rel=5e-4)
 
 
 def test_heating_held_all_around_gives_E_alpha_dtheta_by_one_less_nu(found):
-    held = found["constrained"]
-    assert np.array(held["plane"]) / held["plane_expected"] == pytest.approx(np.eye(2), abs=1e-9)
+    fixed = found["constrained"]
+    assert np.array(fixed["plane"]) / fixed["plane_expected"] == pytest.approx(np.eye(2), abs=1e-9)
 
 
 def test_work_of_expansion_is_what_the_bonds_store(found):
@@ -73,19 +73,19 @@ def test_friction_heat_of_a_sliding_block_is_exact_in_both_bodies(found):
 
 
 def test_a_cut_with_expansion_keeps_its_books_and_resumes_to_the_last_bit(tmp_path):
-    whole, out = test_tooth(tmp_path / "whole", **HOT), tmp_path / "out"
+    whole, out = tooth_cycles(tmp_path / "whole", **HOT), tmp_path / "out"
     assert whole.code == 0, whole.stderr
-    book = whole.summary["audits"]["energy"]
-    assert book["thermal_expansion"] != 0 and abs(book["residual"]) < 0.02 * book["tool_work"]
+    balance = whole.summary["balances"]["energy"]
+    assert balance["thermal_expansion"] != 0 and abs(balance["residual"]) < 0.02 * balance["tool_work"]
     assert interrupt(out, signal.SIGTERM, 2, **HOT).code == 128 + signal.SIGTERM
-    resumed = test_tooth(out, "--resume", **HOT)
+    resumed = tooth_cycles(out, "--resume", **HOT)
     assert resumed.code == 0, resumed.stderr
     assert resumed.summary["results"] == whole.summary["results"]
-    assert resumed.summary["audits"] == whole.summary["audits"]
+    assert resumed.summary["balances"] == whole.summary["balances"]
 
 
 def test_without_expansion_there_is_no_engine_for_it(tmp_path):
-    run = test_tooth(tmp_path / "out", start_up=1e-4, cycles=0)
+    run = tooth_cycles(tmp_path / "out", start_up=1e-4, cycles=0)
     assert "expansion" not in run.summary["wall_time"]["by_engine"]
 
 

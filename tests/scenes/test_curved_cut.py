@@ -1,9 +1,9 @@
-"""A tool on a curved path: it stays on it, its work is that of all forces and torques on it, and the books close."""
+"""A tool on a curved path: it stays on it, its work is that of all forces and torques on it, and the balances close."""
 import pytest
 
-from .conftest import ROOT, SMALL, arguments, run_script
+from tests.running import ROOT, SMALL, arguments, run_script
 
-CURVED = {**SMALL, "start_up": 6e-4, "cycles": 2, "cycle_time": 6e-4, "acceleration": 3e5, "clearance": 30}
+CURVED = {**SMALL, "start_up": 6e-4, "cycles": 2, "cycle_time": 6e-4, "wear_acceleration": 3e5, "clearance": 30}
 
 
 @pytest.fixture(scope="module")
@@ -30,6 +30,6 @@ def test_its_work_is_that_of_all_forces_and_torques(curved):
 
 
 def test_its_energy_book_closes(curved):
-    book = curved.summary["audits"]["energy"]
-    assert book["tool_work"] > 100
-    assert abs(book["residual"]) < 0.02 * book["tool_work"]
+    balance = curved.summary["balances"]["energy"]
+    assert balance["tool_work"] > 100
+    assert abs(balance["residual"]) < 0.02 * balance["tool_work"]

@@ -1,25 +1,25 @@
-"""Cuts in space, in miniature (M 13): books close, wear is Archard's, a loose fill weighs what it weighs, runs resume."""
+"""Cuts in space, in miniature (M 13): balances close, wear is Archard's, a loose fill weighs what it weighs, runs resume."""
 import json
 import signal
 
 import numpy as np
 import pytest
 
-from rockwear.facet_tool import read_stl, write_stl
+from rockwear.model.facet_tool import read_stl, write_stl
 from rockwear.kernels.boundary import check_boundary, distance, volume
 from rockwear.report import space
 from rockwear.report.folder import RunFolder, read_history
 
-from .conftest import (ROOT, arguments, assert_as_if_never_stopped, finish, history, interrupt_script, run_script,
+from tests.running import (ROOT, arguments, assert_as_if_never_stopped, finish, history, interrupt_script, run_script,
                        start)
 
-BONDED = dict(width=0.28, height=0.1, depth=0.16, coarsening=1, radius=0.012, tool_radius=3e-3, breadth=0.04, tooth_height=0.06,
+BONDED = dict(width=0.28, height=0.1, depth=0.16, scale_factor=1, radius=0.012, tool_radius=3e-3, breadth=0.04, tooth_height=0.06,
               tooth_width=0.04, depth_of_cut=0.026, lowering_velocity=0.5, velocity=0.5, cut_time=0.09, snapshot_period=0.03)
 """A cut as of M 13.3 through 340 spheres."""
 FACETED = {**{name: v for name, v in BONDED.items() if name != "tool_radius"}, "facet": 0.02, "tool_kn": 1e7, "tool_kt": 1e7}
 """The same by a tooth of triangles. Contacts are ten times as stiff as M's: overlaps of 12 % of a radius at a sharp edge cost
 the energy book 4 %."""
-LOOSE = dict(width=0.3, height=0.08, depth=0.17, coarsening=1, radius=0.012, breadth=0.04, tooth_height=0.08, tooth_width=0.04,
+LOOSE = dict(width=0.3, height=0.08, depth=0.17, scale_factor=1, radius=0.012, breadth=0.04, tooth_height=0.08, tooth_width=0.04,
              depth_of_cut=0.026, freeboard=0.03, settling=0.5, lowering_velocity=0.3, cut_time=0.1, start=0.16, facet=0.03)
 """A fill as of M 13.1."""
 
@@ -39,9 +39,9 @@ def last_snapshot(out):
 
 
 def books_close(run, part):
-    energy = run.summary["audits"]["energy"]
+    energy = run.summary["balances"]["energy"]
     assert energy["tool_work"] > 1 and abs(energy["residual"]) < part * energy["tool_work"]
-    friction = run.summary["audits"]["friction"]
+    friction = run.summary["balances"]["friction"]
     assert friction["worn_by"] == pytest.approx(friction["tool"], rel=1e-9)
 
 
@@ -59,7 +59,7 @@ def test_a_tooth_of_particles_breaks_bonds_and_books_its_work(worn):
 
 
 def test_worn_volume_is_archards_and_none_goes(worn):
-    friction = worn.summary["audits"]["friction"]["worn_by"]
+    friction = worn.summary["balances"]["friction"]["worn_by"]
     assert value(worn, "worn_volume") == pytest.approx(5e-9 * friction, rel=1e-9, abs=0)
     assert value(worn, "particles_removed") == 0 and value(worn, "mass_lost") == 0
     shot = last_snapshot(worn.out)
@@ -73,7 +73,7 @@ def test_wear_in_space_is_judged_by_the_rules_of_acceleration(worn):
     columns, units = read_history(worn.out / "wear_profile.csv")
     assert set(units.values()) == {"m3"}
     assert np.sum(list(columns.values())) == pytest.approx(value(worn, "worn_volume"), rel=1e-9, abs=0)
-    assert 0 < value(worn, "wear_distribution_error") and value(worn, "trusted_acceleration") > 0
+    assert 0 < value(worn, "wear_distribution_error") and value(worn, "trusted_wear_acceleration") > 0
     assert (worn.out / "figures/trust.png").exists()
 
 
@@ -86,7 +86,7 @@ def test_fewer_samples_of_the_contacts_find_the_same_friction(worn, tmp_path):
     """Each stands for five steps, its springs those of the step before; with older ones 5 % of the friction goes astray."""
     run = scene("cutting_3d_wear", tmp_path / "run", sampling_period=5, report="false", **BONDED)
     assert run.code == 0, run.stderr
-    friction, whole = (r.summary["audits"]["friction"]["tool"] for r in (run, worn))
+    friction, whole = (r.summary["balances"]["friction"]["tool"] for r in (run, worn))
     assert friction != whole and friction == pytest.approx(whole, rel=0.01)
     books_close(run, 0.02)
 
@@ -110,13 +110,13 @@ def test_particles_go_as_they_wear(tmp_path, rule):
                 **{**BONDED, "cut_time": 0.05})
     assert run.code == 0, run.stderr
     assert value(run, "particles_removed") > 10
-    mass = run.summary["audits"]["mass"]
-    assert mass["archard"] == pytest.approx(7830 * 3e-8 / 0.1 * run.summary["audits"]["friction"]["worn_by"], rel=1e-9)
+    mass = run.summary["balances"]["mass"]
+    assert mass["archard"] == pytest.approx(7830 * 3e-8 / 0.1 * run.summary["balances"]["friction"]["worn_by"], rel=1e-9)
     if rule == "volume":
         assert abs(mass["unexplained"]) < 1e-9 * mass["archard"]
     shot, radii = last_snapshot(run.out), np.load(run.out / "model.npz")["tool_radii"]
     assert (shot["worn_depth"][shot["alive"]] < 2 * radii[shot["alive"]]).all()
-    assert set(shot["skin"].tolist()) <= set(np.flatnonzero(shot["alive"]).tolist())
+    assert set(shot["surface"].tolist()) <= set(np.flatnonzero(shot["alive"]).tolist())
     books_close(run, 0.03)
 
 
@@ -139,7 +139,7 @@ def blunted(tmp_path_factory):
 def test_triangles_lose_archards_volume_and_do_not_fold(blunted):
     model, shot = np.load(blunted.out / "model.npz"), last_snapshot(blunted.out)
     first, now, facets = model["tool_vertices"], shot["tool_vertices"], shot["tool_facets"]
-    mass, friction = (blunted.summary["audits"][name] for name in ("mass", "friction"))
+    mass, friction = (blunted.summary["balances"][name] for name in ("mass", "friction"))
     assert value(blunted, "worn_volume") == pytest.approx(3e-9 / 0.1 * friction["worn_by"], rel=1e-9, abs=0)
     assert mass["archard"] == pytest.approx(7830 * value(blunted, "worn_volume"), rel=1e-12, abs=0)
     gone = 7830 * (volume(first, model["tool_facets"]) - volume(now, facets))
@@ -154,7 +154,7 @@ def test_one_mode_of_several_wears_and_is_judged_like_archards_law(blunted, tmp_
     run = scene("cutting_3d_triangles", tmp_path / "run", wear_law="modes", wear_modes="3e-9/1/1", reshape="true", report="false",
                 **FACETED)
     assert run.code == 0, run.stderr
-    for name in ("worn_volume", "wear_distribution_error", "trusted_acceleration"):
+    for name in ("worn_volume", "wear_distribution_error", "trusted_wear_acceleration"):
         assert value(run, name) == pytest.approx(value(blunted, name), rel=1e-6, abs=0)
     assert (run.out / "tool.stl").exists()
 
@@ -166,7 +166,7 @@ def test_contacts_that_pass_to_facets_given_elsewhere_bring_no_energy(tmp_path):
     assert run.code == 0, run.stderr
     model, shot = np.load(run.out / "model.npz"), last_snapshot(run.out)
     assert (model["tool_facets"] != shot["tool_facets"]).any() and value(run, "mass_lost") > 0.05
-    energy = run.summary["audits"]["energy"]
+    energy = run.summary["balances"]["energy"]
     assert abs(energy["residual"]) < 0.01 * energy["tool_work"]
     check_boundary(shot["tool_vertices"], shot["tool_facets"])
 
@@ -217,9 +217,9 @@ def test_a_loose_fill_settles_to_its_weight_and_resists_the_tooth(tmp_path):
     run = scene("granular_3d", tmp_path / "run", report="false", **LOOSE)
     assert run.code == 0, run.stderr
     model, shot = np.load(tmp_path / "run/model.npz"), last_snapshot(tmp_path / "run")
-    free = ~model["rock_supported"]
+    free = ~model["rock_fixed"]
     assert (shot["rock_positions"][free, 1] > 0).all()
-    energy = run.summary["audits"]["energy"]
+    energy = run.summary["balances"]["energy"]
     assert abs(energy["residual"]) < 0.02 * (energy["tool_work"] - energy["potential"])
     columns = history(tmp_path / "run")
     deep = columns["stage [-]"] == 1

@@ -1,4 +1,4 @@
-"""The dredge pick in miniature: cuts and cooling in turn, books that close, and a resume out of the water."""
+"""The dredge pick in miniature: cuts and cooling in turn, balances that close, and a resume out of the water."""
 import json
 import signal
 import time
@@ -6,11 +6,11 @@ import time
 import numpy as np
 import pytest
 
-from .conftest import ROOT, arguments, finish, history, run_script, start
+from tests.running import ROOT, arguments, finish, history, run_script, start
 
 SCRIPT = ROOT / "yade_scripts/dredge_pick.py"
 TINY = dict(cut_time=0.016, cycles=2, tool_radius_min=2e-3, tool_radius_max=2e-3, record_period=5e-4,
-            cooling_period=0.02, snapshot_period=0.25, acceleration=4e5)
+            cooling_period=0.02, snapshot_period=0.25, wear_acceleration=4e5)
 
 
 def dredge(out, *flags, **values):
@@ -60,14 +60,14 @@ def test_in_the_water_only_heat_happens(turns):
 
 
 def test_books_close_with_the_heat_of_the_water(turns):
-    audits = turns.summary["audits"]
-    heat = audits["heat"]
+    balances = turns.summary["balances"]
+    heat = balances["heat"]
     assert -heat["convected"] > 10 and heat["generated"] > 10
     assert abs(heat["residual"]) < 1e-12 * 1e8  # of the heat held above 0 K
     assert -heat["convected"] == pytest.approx(history(turns.out)["water_heat [J/m]"][-1], rel=1e-9)
-    assert abs(audits["mass"]["unexplained"]) < 1e-12 * audits["mass"]["initial"]
-    assert audits["energy"]["tool_work"] > 100
-    assert abs(audits["energy"]["residual"]) < 0.03 * audits["energy"]["tool_work"]
+    assert abs(balances["mass"]["unexplained"]) < 1e-12 * balances["mass"]["initial"]
+    assert balances["energy"]["tool_work"] > 100
+    assert abs(balances["energy"]["residual"]) < 0.03 * balances["energy"]["tool_work"]
 
 
 def test_heat_of_the_pick_is_its_share_of_friction_and_little_goes_with_worn_particles(turns):
@@ -107,7 +107,7 @@ def test_killed_in_the_water_and_resumed_equals_never_stopped(turns, tmp_path):
     resumed = dredge(out, "--resume", checkpoint_interval=0.2)
     assert resumed.code == 0, resumed.stderr
     assert resumed.summary["results"] == turns.summary["results"]
-    assert resumed.summary["audits"] == turns.summary["audits"]
+    assert resumed.summary["balances"] == turns.summary["balances"]
     for name in ("history.csv", "turns.csv"):
         assert (out / name).read_bytes() == (turns.out / name).read_bytes()
 

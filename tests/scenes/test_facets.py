@@ -12,11 +12,11 @@ from rockwear.kernels.wear_statistics import places
 from rockwear.report import segments
 from rockwear.report.folder import RunFolder, read_history
 
-from .conftest import ROOT, SMALL, arguments, interrupt_script, run_script
+from tests.running import ROOT, SMALL, arguments, interrupt_script, run_script
 
 SEGMENTS = ROOT / "yade_scripts/cutting_segments.py"
 SHORT = {**SMALL, "velocity": 4.0, "start_up": 8e-4, "cycles": 1, "cycle_time": 2e-4, "reshape": "true", "hardness": 0,
-         "wear_coefficient": 0.01128, "acceleration": 3e4, "wear_period": 50}
+         "wear_coefficient": 0.01128, "wear_acceleration": 3e4, "wear_period": 50}
 
 
 @lru_cache
@@ -92,12 +92,12 @@ def test_worn_triangles_lose_archards_volume_and_the_next_contact_feels_it():
 def test_the_segments_cut_wear_and_close_their_books(worn):
     assert worn.code == 0, worn.stderr
     assert result(worn, "tensile_cracks") > 20
-    books = worn.summary["audits"]
-    assert abs(books["energy"]["residual"]) < 0.02 * books["energy"]["tool_work"]
-    assert books["friction"]["worn_by"] == pytest.approx(books["friction"]["tool"], rel=1e-9)
-    assert abs(books["mass"]["unexplained"]) < 1e-12 * books["mass"]["initial"]
-    assert books["mass"]["removed"] > 0.9 * books["mass"]["archard"]
-    exact = 0.01128 * 3e4 / 0.839 * books["friction"]["worn_by"] / (515 * 9.80665e6 - 20 / 200 * 6 * 9.80665e6)
+    balances = worn.summary["balances"]
+    assert abs(balances["energy"]["residual"]) < 0.02 * balances["energy"]["tool_work"]
+    assert balances["friction"]["worn_by"] == pytest.approx(balances["friction"]["tool"], rel=1e-9)
+    assert abs(balances["mass"]["unexplained"]) < 1e-12 * balances["mass"]["initial"]
+    assert balances["mass"]["removed"] > 0.9 * balances["mass"]["archard"]
+    exact = 0.01128 * 3e4 / 0.839 * balances["friction"]["worn_by"] / (515 * 9.80665e6 - 20 / 200 * 6 * 9.80665e6)
     assert result(worn, "worn_volume") == pytest.approx(exact, rel=1e-12, abs=0)
     assert worn.summary["results"]["worn_volume"]["unit"] == "m3/m"
     assert read_history(worn.out / "history.csv")[1]["worn_volume"] == "m3/m"
@@ -142,20 +142,20 @@ def test_segments_are_judged_by_the_rules_of_acceleration(worn):
     middle = model["tool_vertices"][model["tool_facets"]].mean(axis=1)
     worn_volume = last_snapshot(worn)["worn_volume"]
     assert by_place == pytest.approx(np.bincount(places(model["outline"], middle), worn_volume, len(by_place)), rel=1e-9, abs=1e-9 * by_place.sum())
-    assert 0 < result(worn, "trusted_acceleration") < 0.1 * 3e4
+    assert 0 < result(worn, "trusted_wear_acceleration") < 0.1 * 3e4
     assert any("a layer as deep as its facet goes in" in line for line in worn.summary["warnings"])
     assert (worn.out / "figures/trust.png").exists()
 
 
 def test_a_half_of_the_work_wears_half(worn, tmp_path):
     run = cut(tmp_path / "out", work_fraction=0.5, reshape="false", cycles=0)
-    friction = run.summary["audits"]["friction"]["worn_by"]
-    whole = result(worn, "worn_volume") / worn.summary["audits"]["friction"]["worn_by"]
+    friction = run.summary["balances"]["friction"]["worn_by"]
+    whole = result(worn, "worn_volume") / worn.summary["balances"]["friction"]["worn_by"]
     assert result(run, "worn_volume") == pytest.approx(0.5 * whole * friction, rel=1e-12, abs=0)
     assert result(run, "mass_lost") == 0
-    book = run.summary["audits"]["mass"]
-    assert book["archard"] == book["shape_kept"] == pytest.approx(7830 * result(run, "worn_volume"), rel=1e-12, abs=0)
-    assert book["removed"] == book["unexplained"] == 0
+    balance = run.summary["balances"]["mass"]
+    assert balance["archard"] == balance["shape_kept"] == pytest.approx(7830 * result(run, "worn_volume"), rel=1e-12, abs=0)
+    assert balance["removed"] == balance["unexplained"] == 0
     model, shot = np.load(run.out / "model.npz"), last_snapshot(run)
     length = np.linalg.norm(np.diff(model["tool_vertices"][model["tool_facets"]], axis=1)[:, 0], axis=1)
     assert result(run, "maximum_wear_depth") == pytest.approx((shot["worn_volume"] / length).max(), rel=1e-12, abs=0) and length.max() <= 1e-3
@@ -169,7 +169,7 @@ def test_stopped_and_resumed_equals_never_stopped(worn, tmp_path):
     resumed = cut(out, "--resume", checkpoint_interval=0.01)
     assert resumed.code == 0, resumed.stderr
     assert resumed.summary["results"] == worn.summary["results"]
-    assert resumed.summary["audits"] == worn.summary["audits"]
+    assert resumed.summary["balances"] == worn.summary["balances"]
     assert np.array_equal(*(last_snapshot(run)["tool_vertices"] for run in (worn, resumed)))
 
 
@@ -182,13 +182,13 @@ def test_a_particle_inside_the_tool_is_found(kind):
 
 def test_wear_too_fast_for_the_shape_ends_with_what_to_change(tmp_path):
     # The first that is too fast: it has worn before.
-    runs = ((value, cut(tmp_path / f"{value:g}", acceleration=value, cycles=0)) for value in (3e4, 1e5, 3e5, 1e6, 3e6))
-    acceleration, run = next((value, run) for value, run in runs if run.code)
+    runs = ((value, cut(tmp_path / f"{value:g}", wear_acceleration=value, cycles=0)) for value in (3e4, 1e5, 3e5, 1e6, 3e6))
+    wear_acceleration, run = next((value, run) for value, run in runs if run.code)
     assert run.code == 1
     said = next(line for line in run.stderr.splitlines() if line.startswith("error:"))
-    assert "would recede by" in said and f"lower acceleration = {acceleration:g}" in said and "Traceback" not in run.stderr
+    assert "would recede by" in said and f"lower acceleration = {wear_acceleration:g}" in said and "Traceback" not in run.stderr
     assert "worn" not in run.summary["ended"].replace("its wear", "")
-    assert abs(run.summary["audits"]["mass"]["unexplained"]) < 1e-12 * run.summary["audits"]["mass"]["initial"]
+    assert abs(run.summary["balances"]["mass"]["unexplained"]) < 1e-12 * run.summary["balances"]["mass"]["initial"]
 
 
 @pytest.mark.parametrize("values, words", [

@@ -3,7 +3,7 @@ the peak."""
 
 import pytest
 
-from .conftest import checks_of
+from tests.running import checks_of
 
 
 @pytest.fixture(scope="module")

@@ -4,7 +4,7 @@ import signal
 import numpy as np
 import pytest
 
-from .conftest import ROOT, arguments, assert_as_if_never_stopped, interrupt_script, run_script
+from tests.running import ROOT, arguments, assert_as_if_never_stopped, interrupt_script, run_script
 
 SCRIPT = ROOT / "yade_scripts/heat_benchmarks.py"
 SMALL = dict(across=32, refinements=2, report="false")
@@ -41,8 +41,8 @@ def test_temperatures_are_the_exact_ones_and_converge(everything, packing):
 
 
 def test_the_books_close_and_only_heat_is_there(everything):
-    book = everything.summary["audits"]["heat"]
-    assert abs(book["residual"]) < 1e-12 * book["generated"] and book["generated"] > 1e3
+    balance = everything.summary["balances"]["heat"]
+    assert abs(balance["residual"]) < 1e-12 * balance["generated"] and balance["generated"] > 1e3
     assert set(everything.summary["wall_time"]["by_engine"]) == {"heat", "recorder"}
     assert (everything.out / "report.html").stat().st_size > 1e5
 

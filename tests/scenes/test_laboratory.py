@@ -6,7 +6,7 @@ import signal
 import numpy as np
 import pytest
 
-from .conftest import ROOT, arguments, assert_as_if_never_stopped, history, interrupt_script, run_script
+from tests.running import ROOT, arguments, assert_as_if_never_stopped, history, interrupt_script, run_script
 
 SCRIPT = ROOT / "yade_scripts/uniaxial.py"
 EXACT = ROOT / "tests/scenes/scripts/laboratory.py"
@@ -63,8 +63,8 @@ def test_compression_breaks_the_specimen(compressed):
 
 
 def test_the_end_leaves_figures_and_books(compressed):
-    book = compressed.summary["audits"]["energy"]
-    assert abs(book["residual"]) < 0.03 * book["platen_work"] and book["bond_breaking"] > 0
+    balance = compressed.summary["balances"]["energy"]
+    assert abs(balance["residual"]) < 0.03 * balance["platen_work"] and balance["bond_breaking"] > 0
     assert (compressed.out / "report.html").stat().st_size > 1e4
     columns = history(compressed.out)
     stress = columns["stress [Pa]"]
@@ -81,15 +81,15 @@ def test_the_rock_is_weaker_in_tension_and_as_stiff(compressed, tmp_path):
 
 
 def test_discs_that_cannot_turn_make_the_rock_stiffer(compressed, tmp_path):
-    held = laboratory(tmp_path / "out", rotation="blocked", strain_max=1e-3)
-    assert held.code == 0, held.stderr
-    assert value(held, "youngs_modulus") > 1.02 * value(compressed, "youngs_modulus")
-    assert abs(held.summary["audits"]["energy"]["residual"]) < 0.01 * held.summary["audits"]["energy"]["platen_work"]
+    fixed = laboratory(tmp_path / "out", rotation="blocked", strain_max=1e-3)
+    assert fixed.code == 0, fixed.stderr
+    assert value(fixed, "youngs_modulus") > 1.02 * value(compressed, "youngs_modulus")
+    assert abs(fixed.summary["balances"]["energy"]["residual"]) < 0.01 * fixed.summary["balances"]["energy"]["platen_work"]
 
 
 @pytest.mark.parametrize("law, softer", [("damage", 2e9), ("plastic", 2e9)])
 def test_softening_bonds_make_the_rock_stronger(tmp_path, law, softer):
-    steep, gentle = (laboratory(tmp_path / f"{H:g}", test="tension", law=law, H=H) for H in (1e12, softer))
+    steep, gentle = (laboratory(tmp_path / f"{H:g}", test="tension", bond_law=law, H=H) for H in (1e12, softer))
     assert value(gentle, "peak_stress") > 1.05 * value(steep, "peak_stress")
 
 
@@ -103,7 +103,7 @@ def test_stopped_and_resumed_equals_never_stopped(compressed, tmp_path):
 @pytest.mark.parametrize("law", ["damage", "plastic"])
 def test_softening_bonds_stopped_past_their_peak_and_resumed_equal_never_stopped(tmp_path, law):
     """Ten thousand steps, of which the last three thousand lie past the peak of the specimen, too."""
-    options = dict(law=law, H=1e9, speed=0.05, strain_max=0.01, drop=0)
+    options = dict(bond_law=law, H=1e9, speed=0.05, strain_max=0.01, drop=0)
     never = laboratory(tmp_path / "never", **options)
     assert never.code == 0, never.stderr
     out = tmp_path / "out"
@@ -115,7 +115,7 @@ def test_softening_bonds_stopped_past_their_peak_and_resumed_equal_never_stopped
         assert sum(softened) > 3
     resumed = laboratory(out, "--resume", **options)
     assert resumed.code == 0, resumed.stderr
-    for name in ("results", "audits"):
+    for name in ("results", "balances"):
         assert resumed.summary[name] == never.summary[name]
     for file in ("history.csv", "cracks.csv"):
         assert (out / file).read_bytes() == (never.out / file).read_bytes()

@@ -3,7 +3,7 @@ import json
 
 import pytest
 
-from .conftest import ROOT, SMALL, arguments, run_script
+from tests.running import ROOT, SMALL, arguments, run_script
 
 SCRIPT = ROOT / "tests/scenes/scripts/removal.py"
 CUT = {name: value for name, value in SMALL.items() if name != "snapshot_period"}
@@ -15,27 +15,27 @@ def removal(**values):
     return json.loads(next(line for line in run.stdout.splitlines() if line.startswith("JSON"))[4:])
 
 
-def books_close(audits):
-    energy, heat, mass = audits["energy"], audits["heat"], audits["mass"]
+def books_close(balances):
+    energy, heat, mass = balances["energy"], balances["heat"], balances["mass"]
     assert energy["tool_work"] > 50 and abs(energy["residual"]) < 0.03 * energy["tool_work"]
     assert abs(heat["residual"]) < 1e-5
     assert abs(mass["unexplained"]) < 1e-12 * mass["initial"]
 
 
 @pytest.mark.parametrize("acceleration, least", [(3e6, 50), (3e5, 5)])
-def test_uncovered_particles_come_without_a_push(acceleration, least):
+def test_uncovered_particles_come_without_a_push(wear_acceleration, least):
     """What has just been uncovered overlaps no rock: no force from nowhere, and the energy that contacts take with them
     is in the book."""
-    found = removal(acceleration=acceleration, start_up=2e-3)
+    found = removal(wear_acceleration=wear_acceleration, start_up=2e-3)
     assert found["removed"] > least and found["overlaps"] == [] and found["unlisted"] == []
     # The force that they meet rock with at last is that of an approach from outside.
     assert max(found["pushes"], default=0) < 1.01
-    books_close(found["audits"])
-    assert 0 < found["audits"]["energy"]["removed_contacts"] < 0.1 * found["audits"]["energy"]["tool_work"]
+    books_close(found["balances"])
+    assert 0 < found["balances"]["energy"]["removed_contacts"] < 0.1 * found["balances"]["energy"]["tool_work"]
 
 
 def test_a_tooth_cut_in_two_goes_on_with_the_piece_that_is_held():
-    found = removal(saw="true", acceleration=100, start_up=1.2e-3)
+    found = removal(saw="true", wear_acceleration=100, start_up=1.2e-3)
     assert found["below"] == [0, 0, 0] and found["unlisted"] == []
-    assert found["audits"]["mass"]["dropped_pieces"] > 0.005 * found["audits"]["mass"]["initial"]
-    books_close(found["audits"])
+    assert found["balances"]["mass"]["dropped_pieces"] > 0.005 * found["balances"]["mass"]["initial"]
+    books_close(found["balances"])

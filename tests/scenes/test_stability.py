@@ -4,9 +4,9 @@ import math
 
 import pytest
 
-from calibration import stability
+from calibration.benchmarks import stability
 
-from .conftest import ROOT, arguments, run_script
+from tests.running import ROOT, arguments, run_script
 
 EXACT = ROOT / "tests/scenes/scripts/laboratory.py"
 TOOL = ["stiff tool on soft rock, 90:20", "90 % contact damping", "90 % contact damping, kt = kn/5"]

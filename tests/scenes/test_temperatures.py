@@ -4,11 +4,11 @@ import signal
 import numpy as np
 import pytest
 
-from .conftest import ROOT, SMALL, arguments, history, interrupt_script, run_script, test_tooth
+from tests.running import ROOT, SMALL, arguments, history, interrupt_script, run_script, tooth_cycles
 
 RIPPER = ROOT / "yade_scripts/ripper_temperature.py"
 PASSES = {**{name: value for name, value in SMALL.items() if name != "cycles"}, "approach": 1e-4, "start_up": 1e-4,
-          "cycle_time": 5e-4, "long_time": 1.0, "tool_radius_max": 0.52e-3, "acceleration": 1e5}
+          "cycle_time": 5e-4, "long_time": 1.0, "tool_radius_max": 0.52e-3, "wear_acceleration": 1e5}
 
 
 def value(run, name):
@@ -30,9 +30,9 @@ def cuts(tmp_path_factory):
     folder, found = tmp_path_factory.mktemp("cuts"), {}
     for slow in (1, 100):
         for conduction in ("true", "false"):
-            found[slow, conduction] = test_tooth(
-                folder / f"{slow}{conduction}", velocity=4 / slow, speed_up=slow, conduction=conduction, report="false",
-                acceleration=0, **{name: SMALL.get(name, default) * slow for name, default in dict(
+            found[slow, conduction] = tooth_cycles(
+                folder / f"{slow}{conduction}", velocity=4 / slow, time_scale=slow, conduction=conduction, report="false",
+                wear_acceleration=0, **{name: SMALL.get(name, default) * slow for name, default in dict(
                     start_up=0, heat_period=1e-4, surface_period=5e-4, record_period=2e-5, snapshot_period=0).items()},
                 **{"cycles": 0})
             assert found[slow, conduction].code == 0, found[slow, conduction].stderr
@@ -49,14 +49,14 @@ def test_heat_flows_in_the_time_of_the_process(cuts):
     assert value(cuts[1, "false"], "tool_temperature_max") == value(cuts[100, "false"], "tool_temperature_max")
     rise = {slow: value(cuts[slow, "true"], "tool_temperature_max") - 293.15 for slow in (1, 100)}
     assert 0 < rise[100] < 0.9 * rise[1]
-    convected = {slow: cuts[slow, "true"].summary["audits"]["heat"]["convected"] for slow in (1, 100)}
+    convected = {slow: cuts[slow, "true"].summary["balances"]["heat"]["convected"] for slow in (1, 100)}
     assert convected[100] < 5 * convected[1] < 0
 
 
 def test_without_conduction_heat_stays_where_it_arose(cuts):
     run = cuts[1, "false"]
-    book = run.summary["audits"]["heat"]
-    assert book["convected"] == 0 and book["stored"] == pytest.approx(book["generated"], rel=1e-9)
+    balance = run.summary["balances"]["heat"]
+    assert balance["convected"] == 0 and balance["stored"] == pytest.approx(balance["generated"], rel=1e-9)
     assert value(run, "tool_temperature_max") > value(cuts[1, "true"], "tool_temperature_max")
 
 
@@ -87,10 +87,10 @@ def test_each_field_starts_its_own_wear_with_a_whole_tool(passes):
     profile = np.loadtxt(passes.out / "wear_profile.csv", delimiter=",", skiprows=1)
     last = value(passes, "worn_volume_from_insulated_root")
     assert profile.min() >= 0 and profile.sum() == pytest.approx(last, rel=0.2)
-    for k, root in ((4, "fixed"), (5, "insulated")):
-        assert hottest[stage == k][0] == pytest.approx(value(passes, f"hottest_{root}_root_0.4"), abs=1.0)
-        assert value(passes, f"worn_volume_from_{root}_root") == pytest.approx(worn[stage == k].max(), rel=0.2)
-    assert abs(passes.summary["audits"]["heat"]["residual"]) < 1e-8 * passes.summary["audits"]["heat"]["generated"]
+    for k, shank in ((4, "fixed"), (5, "insulated")):
+        assert hottest[stage == k][0] == pytest.approx(value(passes, f"hottest_{shank}_root_0.4"), abs=1.0)
+        assert value(passes, f"worn_volume_from_{shank}_root") == pytest.approx(worn[stage == k].max(), rel=0.2)
+    assert abs(passes.summary["balances"]["heat"]["residual"]) < 1e-8 * passes.summary["balances"]["heat"]["generated"]
 
 
 def test_a_stopped_ripper_resumes_to_the_last_bit(passes, tmp_path):
@@ -100,7 +100,7 @@ def test_a_stopped_ripper_resumes_to_the_last_bit(passes, tmp_path):
     resumed = ripper(out, "--resume", checkpoint_interval=0.01)
     assert resumed.code == 0, resumed.stderr
     assert resumed.summary["results"] == passes.summary["results"]
-    assert resumed.summary["audits"] == passes.summary["audits"]
+    assert resumed.summary["balances"] == passes.summary["balances"]
     for name in ("history.csv", "tool_fields.csv", "warming.csv"):
         assert (out / name).read_bytes() == (passes.out / name).read_bytes()
 

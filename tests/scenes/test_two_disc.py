@@ -2,7 +2,7 @@
 
 import pytest
 
-from .conftest import ROOT, checks_of, run_script
+from tests.running import ROOT, checks_of, run_script
 
 
 @pytest.fixture(scope="module")
@@ -31,7 +31,7 @@ def test_the_order_of_the_ids_changes_nothing(checks):
 
 def test_forces_turn_with_the_pair(checks):
     """What a radian of rotation changes is YADE's own error, of the first order in the step."""
-    for law, difference in checks["turning"].items():
+    for law, difference in checks["shear_rotation"].items():
         assert difference < 3e-3 and difference < 0.6 * checks["turning in half the steps"][law]
 
 

@@ -1,11 +1,7 @@
 """The test tooth with a time step that its own check would never let pass."""
-import os
-import sys
 
-ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(sys.argv[0])))))
-sys.path.insert(0, ROOT)
-
-from rockwear import cutting, run  # noqa: E402
+from rockwear.run import main as run
+from rockwear.scenes import cutting
 
 
 class Unstable(cutting.Cutting):

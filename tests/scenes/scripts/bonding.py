@@ -3,13 +3,11 @@ import json
 import os
 import sys
 
-ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(sys.argv[0])))))
-sys.path.insert(0, ROOT)
+from yade import FrictPhys, JCFpmPhys, O, utils
 
-from yade import FrictPhys, JCFpmPhys, O, utils  # noqa: E402
-
-from rockwear import parameters, run  # noqa: E402
-from rockwear.cutting import PARAMETERS, Cutting  # noqa: E402
+from rockwear.run import parameters
+from rockwear.run import main as run
+from rockwear.scenes.cutting import PARAMETERS, Cutting
 
 found = {}
 scene = Cutting(parameters.read([*PARAMETERS, *run.COMMON], sys.argv[1:]))

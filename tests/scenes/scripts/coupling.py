@@ -8,25 +8,24 @@ import os
 import sys
 from types import SimpleNamespace
 
-ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(sys.argv[0])))))
-sys.path.insert(0, ROOT)
+import numpy as np
+from yade import Law2_ScGeom_FrictViscoPhys_CundallStrackVisco, O
 
-import numpy as np  # noqa: E402
-from yade import Law2_ScGeom_FrictViscoPhys_CundallStrackVisco, O  # noqa: E402
-
-from rockwear import engines, scene  # noqa: E402
-from rockwear.engines import law_functor  # noqa: E402
-from rockwear.engines.bonds import Bonds, RockFriction  # noqa: E402
-from rockwear.engines.expansion import Expansion  # noqa: E402
-from rockwear.engines.heat import Heat  # noqa: E402
-from rockwear.engines.motion import Foresight  # noqa: E402
-from rockwear.engines.wear import ToolContact  # noqa: E402
-from rockwear.kernels.bond_laws import ElasticBrittle, ElasticDamage, ElastoPlasticSoftening  # noqa: E402
-from rockwear.kernels.conduction import HeatNetwork, effusivity, effusivity_share  # noqa: E402
-from rockwear.kernels.packing import contacts  # noqa: E402
-from rockwear.kernels.stability import critical_time_step  # noqa: E402
-from rockwear.materials import SANDSTONE, STEEL  # noqa: E402
-from rockwear.rock import Specimen  # noqa: E402
+from rockwear.engines import base
+from rockwear.scenes import yade_scene
+from rockwear.engines.access import law_functor
+from rockwear.engines.bonds import Bonds
+from rockwear.engines.rock_friction import RockFriction
+from rockwear.engines.expansion import Expansion
+from rockwear.engines.heat import Heat
+from rockwear.engines.velocity_increment import VelocityIncrement
+from rockwear.engines.tool_contact import ToolContact
+from rockwear.kernels.bond_laws import ElasticBrittle, ElasticDamage, ElastoPlasticSoftening
+from rockwear.kernels.conduction import HeatNetwork, effusivity, effusivity_share
+from rockwear.kernels.packing import contacts
+from rockwear.kernels.stability import critical_time_step
+from rockwear.model.materials import SANDSTONE, STEEL
+from rockwear.model.rock import Specimen
 
 KN, KT, MU, ALPHA, D = 20e9, 5e9, 0.5, 1e-5, 2e-3
 E = 2 * math.sqrt(3) * KN * (KN + KT) / (3 * KN + KT)
@@ -35,15 +34,15 @@ UNBREAKABLE = ElasticBrittle(kn=KN, kt=KT, Rn=1e12, Rt=1e12, mu=MU)
 NO_PATHS = np.empty((0, 2), int), np.empty(0)
 
 
-def arranged(positions, radii=D / 2, pairs=None, held=()):
+def arranged(positions, radii=D / 2, pairs=None, fixed=()):
     """Discs at given places, those that touch bonded."""
     positions = np.asarray(positions, float)
     count, radii = len(positions), np.broadcast_to(radii, len(positions)).astype(float)
-    supported = np.zeros(count, bool)
-    supported[list(held)] = True
+    fixed = np.zeros(count, bool)
+    fixed[list(fixed)] = True
     masses = 2500 * np.pi * radii**2
     pairs = contacts(positions, radii, 1e-9) if pairs is None else np.reshape(pairs, (-1, 2)).astype(int)
-    return SimpleNamespace(positions=positions, radii=radii, count=count, supported=supported, masses=masses,
+    return SimpleNamespace(positions=positions, radii=radii, count=count, fixed=fixed, masses=masses,
                            inertias=0.5 * masses * radii**2, pairs=pairs)
 
 
@@ -53,15 +52,15 @@ class Assembly:
     def __init__(self, rock, law=UNBREAKABLE, damping=0.0):
         self.rock, self.temperature = rock, np.zeros(rock.count)
         O.reset()
-        scene.put_rock_materials(mu=MU)
-        scene.put_rock(rock)
-        scene.put_loop(kn=KN, kt=KT, mu=MU, damping=damping)
+        yade_scene.put_rock_materials(mu=MU)
+        yade_scene.put_rock(rock)
+        yade_scene.put_loop(kn=KN, kt=KT, mu=MU, damping=damping)
         self.bonds = Bonds(pairs=rock.pairs, law=law, clock=lambda: O.time)
-        scene.make_bonds(rock, self.bonds)
+        yade_scene.make_bonds(rock, self.bonds)
         self.expansion = Expansion(coefficient=ALPHA, rock=rock, reference=0.0, temperature=lambda: self.temperature,
                                    bonds=self.bonds)
-        engines.enlist([self.bonds, self.expansion])
-        O.engines = O.engines[:-1] + engines.runners({"bonds": 1}) + O.engines[-1:]
+        base.register([self.bonds, self.expansion])
+        O.engines = O.engines[:-1] + base.runners({"bonds": 1}) + O.engines[-1:]
         self.bonds.connect()
         self.expansion.connect()
         O.dt = 0.6 * critical_time_step(positions=rock.positions, radii=rock.radii, masses=rock.masses,
@@ -98,8 +97,8 @@ class Assembly:
 
     def relax(self, steps):
         O.run(steps, True)
-        if engines.failures:
-            raise engines.failures.pop()
+        if base.failures:
+            raise base.failures.pop()
 
 
 def packed(**size):
@@ -156,7 +155,7 @@ def constrained():
     rock = packed(width=0.05, seed=2)
     heated = grip(Assembly(rock, damping=0.4), kelvin)
     pressed = grip(Assembly(rock, damping=0.4), 0.0, shortened=kelvin * ALPHA)
-    a = Assembly(arranged(lattice(7, 9), held=range(63)))
+    a = Assembly(arranged(lattice(7, 9), fixed=range(63)))
     for part in (0.25, 0.5, 1.0, 0.7, 2.0, 1.0):
         a.heat(part * kelvin)
         a.relax(1)
@@ -177,7 +176,7 @@ def followed():
     apart = 0.98 * D
     for name, law in laws.items():
         for opening in (0.0, 2e-6, 8e-6, 40e-6):
-            a = Assembly(arranged([(0, 0), (apart, 0)], pairs=[(0, 1)], held=(0, 1)), law)
+            a = Assembly(arranged([(0, 0), (apart, 0)], pairs=[(0, 1)], fixed=(0, 1)), law)
             path, forces = [0.0], [0.0]
 
             def visit(opened, kelvin):
@@ -234,12 +233,12 @@ def two_spinning(period, duration=0.02):
     Friction heats them, they expand, press more and heat more: d' = r alpha chi mu kn d v / C.
     """
     radius, start, chi, alpha, capacity = 1e-3, 1e-7, 0.85, 1e-4, 2.0
-    rock = arranged([(0, 0), (2 * radius - start, 0)], radius, pairs=np.empty((0, 2)), held=(0, 1))
+    rock = arranged([(0, 0), (2 * radius - start, 0)], radius, pairs=np.empty((0, 2)), fixed=(0, 1))
     O.reset()
-    scene.put_rock_materials(mu=MU)
-    scene.put_rock(rock)
+    yade_scene.put_rock_materials(mu=MU)
+    yade_scene.put_rock(rock)
     # A shear spring so stiff that it takes up nothing.
-    scene.put_loop(kn=KN, kt=1e5 * KN, mu=MU)
+    yade_scene.put_loop(kn=KN, kt=1e5 * KN, mu=MU)
     for body in O.bodies:
         body.mat = O.materials["loose rock"]
     O.dt = 1e-6
@@ -248,10 +247,10 @@ def two_spinning(period, duration=0.02):
         body.state.angVel = (0, 0, 20.0)
     speed = 2 * 20.0 * radius
     bonds = Bonds(pairs=rock.pairs, law=UNBREAKABLE, clock=lambda: O.time)
-    motion = Foresight(masses=rock.masses, inertias=rock.inertias, radii=rock.radii, held=rock.supported)
+    motion = VelocityIncrement(masses=rock.masses, inertias=rock.inertias, radii=rock.radii, fixed=rock.fixed)
     friction = RockFriction(bonds=bonds, motion=motion)
     network = HeatNetwork(capacity=np.full(2, capacity), temperature=300.0, edges=NO_PATHS[0], conductance=0.0)
-    nothing = SimpleNamespace(count=0, radii=np.empty(0), mounted=np.zeros(0, bool))
+    nothing = SimpleNamespace(count=0, radii=np.empty(0), fixed=np.zeros(0, bool))
     untouched = SimpleNamespace(take_heating=lambda: (np.empty(0), np.zeros(2), {}))
     heat = Heat(network=network, bonds=bonds, rock_friction=friction, tool_contact=untouched, rock=rock, tool=nothing,
                 heat_fraction=chi, tool_share=0.5, contact_conductance=0.0, convection=0.0, ambient=300.0,
@@ -259,18 +258,18 @@ def two_spinning(period, duration=0.02):
     expansion = Expansion(coefficient=alpha, rock=rock, reference=300.0, temperature=lambda: network.temperature,
                           bonds=bonds, loose=lambda: friction.contacts)
     O.run(10, True)
-    engines.enlist([friction, heat, expansion])
+    base.register([friction, heat, expansion])
     for engine in (bonds, friction, heat, expansion):
         engine.connect()
     steps = round(period / O.dt)
-    O.engines = (O.engines[:-1] + engines.runners({"rock_friction": 1}) + O.engines[-1:]
-                 + engines.runners({"heat": steps, "expansion": steps}))
+    O.engines = (O.engines[:-1] + base.runners({"rock_friction": 1}) + O.engines[-1:]
+                 + base.runners({"heat": steps, "expansion": steps}))
     for engine in (friction, heat, expansion):
         engine.last_iteration = O.iter
     O.run(round(duration / O.dt), True)
     heat.act(), expansion.act()
-    if engines.failures:
-        raise engines.failures.pop()
+    if base.failures:
+        raise base.failures.pop()
     overlap = sum(expansion.radii) - 2 * radius + start
     rate = radius * alpha * chi * MU * KN * speed / capacity
     return overlap / start, math.exp(rate * duration)
@@ -286,25 +285,25 @@ def staggered():
 def sliding_block():
     """A block of steel discs on a turning stone, under a constant force, there and back and there again."""
     stone, radius, pressed, discs = 0.05, 0.5e-3, 4e-6, 5
-    spin, steps = 2.0, 4000
+    angular_velocity, steps = 2.0, 4000
     angle = math.pi / 2 + 2.2 * radius / (stone + radius) * (np.arange(discs) - (discs - 1) / 2)
     places = (stone + radius - pressed) * np.column_stack([np.cos(angle), np.sin(angle)])
     O.reset()
-    scene.put_rock_materials(mu=MU)
-    scene.put_steel(mu=0.3, contact_damping=0.9)
-    rock = arranged([(0, 0)], stone, pairs=np.empty((0, 2)), held=(0,))
-    scene.put_rock(rock)
-    scene.put_loop(kn=KN, kt=KT, mu=MU, tool=(90e9, 90e9, 0.3))
+    yade_scene.put_rock_materials(mu=MU)
+    yade_scene.put_tool_material(mu=0.3, contact_damping=0.9)
+    rock = arranged([(0, 0)], stone, pairs=np.empty((0, 2)), fixed=(0,))
+    yade_scene.put_rock(rock)
+    yade_scene.put_loop(kn=KN, kt=KT, mu=MU, tool=(90e9, 90e9, 0.3))
     O.bodies[0].mat = O.materials["loose rock"]
     bodies = {}
     for index, place in enumerate(places.tolist()):
-        body = scene.finite_disc(place, radius, material="steel", mask=scene.TOOL_MASK, mass=0.0, inertia=0.0)
+        body = yade_scene.finite_disc(place, radius, material="steel", mask=yade_scene.TOOL_MASK, mass=0.0, inertia=0.0)
         body.state.blockedDOFs = "xyzXYZ"
         bodies[index] = O.bodies.append(body)
-    tool = SimpleNamespace(count=discs, radii=np.full(discs, radius), mounted=np.zeros(discs, bool), body_of=bodies,
+    tool = SimpleNamespace(count=discs, radii=np.full(discs, radius), fixed=np.zeros(discs, bool), body_of=bodies,
                            ids=list(bodies.values()), velocity_at=lambda *contact: (0.0, 0.0, 0.0))
     bonds = Bonds(pairs=rock.pairs, law=UNBREAKABLE, clock=lambda: O.time)
-    motion = Foresight(masses=rock.masses, inertias=rock.inertias, radii=rock.radii, held=rock.supported)
+    motion = VelocityIncrement(masses=rock.masses, inertias=rock.inertias, radii=rock.radii, fixed=rock.fixed)
     friction = RockFriction(bonds=bonds, motion=motion)
     contact = ToolContact(tool=tool, motion=motion)
     c_rock, c_tool = 5.0, 2.0
@@ -316,29 +315,29 @@ def sliding_block():
                 heat_fraction=chi, tool_share=share, contact_conductance=0.0, convection=0.0, ambient=300.0,
                 rock_paths=NO_PATHS, tool_paths=NO_PATHS, surface_period=1.0, conduction=False)
     O.dt = 1e-8
-    engines.enlist([contact, friction, heat])
-    O.engines = (O.engines[:-1] + engines.runners({"tool_contact": 1, "rock_friction": 4}) + O.engines[-1:]
-                 + engines.runners({"heat": 100}))
+    base.register([contact, friction, heat])
+    O.engines = (O.engines[:-1] + base.runners({"tool_contact": 1, "rock_friction": 4}) + O.engines[-1:]
+                 + base.runners({"heat": 100}))
     for engine in (bonds, friction, contact, heat):
         engine.connect()
     kn, kt, load = 90e9, 90e9, 0.0
     slip, turns = 0.0, []
     for sign in (1, -1, 1):
-        O.bodies[0].state.angVel = (0, 0, sign * spin)
+        O.bodies[0].state.angVel = (0, 0, sign * angular_velocity)
         O.run(steps, True)
         # Each turn first slackens the springs and draws them taut the other way: no heat in those.
         load = max(i.phys.normalForce.norm() for i in O.interactions if i.isReal)
-        slip += ((steps * O.dt * spin * stone - (1 if not turns else 2) * 0.3 * load / kt)
+        slip += ((steps * O.dt * angular_velocity * stone - (1 if not turns else 2) * 0.3 * load / kt)
                  * (1 - 0.5 * pressed / stone))  # the surfaces meet where they overlap
         turns.append(O.interactions.countReal())
     heat.act()
-    if engines.failures:
-        raise engines.failures.pop()
+    if base.failures:
+        raise base.failures.pop()
     exact = chi * 0.3 * kn * pressed * discs * slip
     rise = network.temperature - 300.0
     return {"force": load / (kn * pressed), "tool_heat": float(c_tool * rise[1:].sum()), "tool_exact": share * exact,
             "rock_heat": float(c_rock * rise[0]), "rock_exact": (1 - share) * exact, "slip": slip,
-            "all_slip": 3 * steps * O.dt * spin * stone, "touching": turns,
+            "all_slip": 3 * steps * O.dt * angular_velocity * stone, "touching": turns,
             "spread": float(np.ptp(rise[1:]) / rise[1:].mean())}
 
 
@@ -348,25 +347,25 @@ def collisions():
     for angle in (20, 45, 70):
         for fraction in (0.8, 0.08):
             O.reset()
-            scene.put_rock_materials(mu=MU)
-            scene.put_steel(mu=0.3, contact_damping=0.9)
+            yade_scene.put_rock_materials(mu=MU)
+            yade_scene.put_tool_material(mu=0.3, contact_damping=0.9)
             thrown = math.radians(angle)
             rock = arranged([(0, 0)], radius, pairs=np.empty((0, 2)))
-            scene.put_rock(rock)
-            scene.put_loop(kn=KN, kt=KT, mu=MU, tool=(90e9, 90e9, 0.3))
+            yade_scene.put_rock(rock)
+            yade_scene.put_loop(kn=KN, kt=KT, mu=MU, tool=(90e9, 90e9, 0.3))
             O.bodies[0].mat = O.materials["loose rock"]
             O.bodies[0].state.vel = (speed * math.cos(thrown), speed * math.sin(thrown), 0)
-            body = scene.finite_disc((1.5 * radius + 1e-6, 0.0), radius / 2, material="steel", mask=scene.TOOL_MASK, mass=0.0,
+            body = yade_scene.finite_disc((1.5 * radius + 1e-6, 0.0), radius / 2, material="steel", mask=yade_scene.TOOL_MASK, mass=0.0,
                                      inertia=0.0)
             body.state.blockedDOFs = "xyzXYZ"
             bodies = {0: O.bodies.append(body)}
             tool = SimpleNamespace(count=1, body_of=bodies, ids=list(bodies.values()),
                                    velocity_at=lambda *contact: (0.0, 0.0, 0.0))
-            motion = Foresight(masses=rock.masses, inertias=rock.inertias, radii=rock.radii, held=rock.supported)
+            motion = VelocityIncrement(masses=rock.masses, inertias=rock.inertias, radii=rock.radii, fixed=rock.fixed)
             contact = ToolContact(tool=tool, motion=motion)
             O.dt = fraction * 2 / math.sqrt(2 * 90e9 / rock.masses[0]) * (math.sqrt(1 + 0.81) - 0.9)
-            engines.enlist([contact])
-            O.engines = O.engines[:-1] + engines.runners({"tool_contact": 1}) + O.engines[-1:]
+            base.register([contact])
+            O.engines = O.engines[:-1] + base.runners({"tool_contact": 1}) + O.engines[-1:]
             contact.connect()
             state = O.bodies[0].state
 
@@ -375,8 +374,8 @@ def collisions():
 
             before = kinetic()
             O.run(int(60 / fraction), True)
-            if engines.failures:
-                raise engines.failures.pop()
+            if base.failures:
+                raise base.failures.pop()
             law = law_functor(Law2_ScGeom_FrictViscoPhys_CundallStrackVisco)
             found.append({"angle": angle, "fraction": fraction, "lost": before - kinetic(), "friction": contact.friction,
                           "dashpot": contact.dashpot_dissipated, "yade": law.plasticDissipation(),

@@ -1,16 +1,12 @@
 """The test tooth on a curved path, watched from outside: its place at the end, and the power of all forces on it."""
-import os
-import sys
 
-ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(sys.argv[0])))))
-sys.path.insert(0, ROOT)
+import numpy as np
+from yade import O
 
-import numpy as np  # noqa: E402
-from yade import O  # noqa: E402
-
-from rockwear import cutting, run  # noqa: E402
-from rockwear.engines import Engine  # noqa: E402
-from rockwear.kernels.rigid_motion import SwingAndRotation  # noqa: E402
+from rockwear.run import main as run
+from rockwear.scenes import cutting
+from rockwear.engines.base import Engine
+from rockwear.kernels.rigid_motion import SwingAndRotation
 
 
 class Power(Engine):
@@ -42,12 +38,12 @@ class Curved(cutting.Cutting):
 
     def _motion(self, v):
         straight = super()._motion(v)
-        return SwingAndRotation(centre=straight.start + (0, 0.015), swing=(1.0, -0.5), spin=200.0, pivot=(0, 0.015))
+        return SwingAndRotation(centre=straight.start + (0, 0.015), swing=(1.0, -0.5), angular_velocity=200.0, pivot=(0, 0.015))
 
     def _make_engines(self):
         super()._make_engines()
         self.power = Power(self.bodies)
-        self._enlist(self.live[0], self.power, *self.live[1:])
+        self._register(self.live[0], self.power, *self.live[1:])
 
     def _periods(self):
         return {**super()._periods(), "power": 1}

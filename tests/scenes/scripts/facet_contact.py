@@ -4,22 +4,22 @@
 """
 import json
 import math
-import os
 import sys
 
 import numpy as np
 from yade import FrictViscoMat, O, PyRunner, utils
 
-sys.path.insert(0, os.path.abspath(os.path.join(os.path.dirname(sys.argv[0]), "../../..")))
-
-from rockwear import engines, scene  # noqa: E402
-from rockwear.engines.facets import FacetContact, FacetWear  # noqa: E402
-from rockwear.engines.motion import Foresight  # noqa: E402
-from rockwear.facet_tool import FacetTool  # noqa: E402
-from rockwear.kernels.archard import Hardness  # noqa: E402
-from rockwear.kernels.boundary import nearest_on_triangle, prism  # noqa: E402
-from rockwear.kernels.rigid_motion import Straight  # noqa: E402
-from rockwear.kernels.wear_laws import DissipationArchard  # noqa: E402
+from rockwear.engines import base
+from rockwear.scenes import yade_scene
+from rockwear.scenes.tool_bodies import FacetBodies
+from rockwear.engines.facet_contact import FacetContact
+from rockwear.engines.facet_wear import FacetWear
+from rockwear.engines.velocity_increment import VelocityIncrement
+from rockwear.model.facet_tool import FacetTool
+from rockwear.kernels.archard import Hardness
+from rockwear.kernels.boundary import nearest_on_triangle, prism
+from rockwear.kernels.rigid_motion import Straight
+from rockwear.kernels.wear_laws import DissipationArchard
 
 KIND, WATCHED = sys.argv[1], "unwatched" not in sys.argv
 MU, FORCE, SPEED, K, HARDNESS = 0.3, 2e4, 4.0, 0.1, 5e9
@@ -38,31 +38,31 @@ else:
     tool = FacetTool.of_outline(box, segment=1.03e-3 if KIND == "chain" else 1.0, density=7830.0)
 FORCE = 2e3 if in_space else FORCE
 
-scene.put_rock_materials(mu=0.8, loose=FrictViscoMat)
-scene.put_steel(mu=MU, contact_damping=0.9)
+yade_scene.put_rock_materials(mu=0.8, loose=FrictViscoMat)
+yade_scene.put_tool_material(mu=MU, contact_damping=0.9)
 places = [(0.0, 0.0), (-6.5e-3, 0.3e-3)] if in_space else [(0.0, 0.0)]
 start = {"triangles": -0.006, "valley": -0.005}.get(KIND, -0.0123)
 surface = 0.75 * box[1, 1]
 mass = 2500 * math.pi * RADIUS**2
 for x, z in places:
-    body = utils.sphere((x, surface - RADIUS, z), RADIUS, material="loose rock", mask=scene.ROCK_MASK)
+    body = utils.sphere((x, surface - RADIUS, z), RADIUS, material="loose rock", mask=yade_scene.ROCK_MASK)
     body.state.mass, body.state.inertia = mass, (mass * RADIUS**2,) * 3
     body.state.blockedDOFs = "xzXYZ"
     O.forces.setPermF(O.bodies.append(body), (0, FORCE, 0))
-scene.put_loop_with_facets(kn=20e9, kt=20e9, mu=0.8, tool=(KN, KN, MU))
-bodies = scene.FacetBodies(tool, Straight(start=(start, 0.0), velocity=(SPEED, 0.0)))
+yade_scene.put_loop_with_facets(kn=20e9, kt=20e9, mu=0.8, tool=(KN, KN, MU))
+bodies = FacetBodies(tool, Straight(start=(start, 0.0), velocity=(SPEED, 0.0)))
 count = len(places)
-motion = Foresight(masses=np.full(count, mass), inertias=np.ones(count), radii=np.full(count, RADIUS),
-                   held=np.zeros(count, bool))
+motion = VelocityIncrement(masses=np.full(count, mass), inertias=np.ones(count), radii=np.full(count, RADIUS),
+                   fixed=np.zeros(count, bool))
 contact = FacetContact(tool=bodies, motion=motion, neighbours=tool.boundary.neighbours())
 wear = FacetWear(contact=contact, boundary=tool.boundary, tool=bodies, law=DissipationArchard(k=K if in_space else 0.0, mu=MU),
                  hardness=Hardness.constant(HARDNESS)(293.0))
 bodies.add(range(tool.count))
 O.dt = 1e-6 if in_space else 1e-7
-engines.enlist([contact, wear])
+base.register([contact, wear])
 found, forces = {}, []
 if WATCHED:
-    O.engines = O.engines[:-1] + engines.runners({"tool_contact": 1}) + O.engines[-1:] + engines.runners({"wear": 50})
+    O.engines = O.engines[:-1] + base.runners({"tool_contact": 1}) + O.engines[-1:] + base.runners({"wear": 50})
 
 
 def note():
@@ -78,8 +78,8 @@ contact.connect()
 
 def run(steps):
     O.run(steps, True)
-    if engines.failures:
-        raise engines.failures[0]
+    if base.failures:
+        raise base.failures[0]
 
 
 run(500 if in_space else 10000)
@@ -91,7 +91,7 @@ distance = SPEED * steps * O.dt
 force = np.array(forces)[at:]
 wear.act()
 found.update(friction=MU * FORCE * distance * count, work=contact.work_done - begun,
-             account=contact.functor.plasticDissipation() - account, own=contact.in_account,
+             account=contact.functor.plasticDissipation() - account, own=contact.in_yade_balance,
              whole=contact.functor.plasticDissipation(), slid=contact.friction,
              ripple=float(np.abs(force - force[0]).max() / FORCE),
              archard=tool.boundary.archard_volume, by_work=K / MU * wear.work_used / HARDNESS,

@@ -10,19 +10,18 @@ import sys
 from types import SimpleNamespace
 from unittest import mock
 
-ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(sys.argv[0])))))
-sys.path.insert(0, ROOT)
+import numpy as np
+from yade import O, utils
 
-import numpy as np  # noqa: E402
-from yade import O, utils  # noqa: E402
-
-from rockwear import engines, scene  # noqa: E402
-from rockwear.engines.bonds import BROKEN, GONE, INTACT, Bonds, LettingGo, RockFriction  # noqa: E402
-from rockwear.engines.motion import Foresight  # noqa: E402
-from rockwear.engines.turning import Turning  # noqa: E402
-from rockwear.kernels.bond_laws import ElasticBrittle, ElasticDamage, ElastoPlasticSoftening  # noqa: E402
-from rockwear.kernels.packing import contacts  # noqa: E402
-from rockwear.two_disc import lead  # noqa: E402
+from rockwear.engines import base
+from rockwear.scenes import yade_scene
+from rockwear.engines.bonds import BROKEN, SEPARATED, INTACT, Bonds, Separation
+from rockwear.engines.rock_friction import RockFriction
+from rockwear.engines.velocity_increment import VelocityIncrement
+from rockwear.engines.shear_rotation import Turning
+from rockwear.kernels.bond_laws import ElasticBrittle, ElasticDamage, ElastoPlasticSoftening
+from rockwear.kernels.packing import contacts
+from rockwear.scenes.two_disc import lead
 
 KN, KT, RN, RT, MU = 2e10, 1e10, 1e5, 6e4, 0.8
 SPRING = dict(kn=KN, kt=KT, mu=MU)
@@ -41,24 +40,24 @@ SQUEEZE = np.array([[-1.2e5, -8e4], [4e4, 6e4]])
 
 
 def lattice():
-    """A triangular one, in the form that scene.put_rock takes."""
+    """A triangular one, in the form that yade_scene.put_rock takes."""
     places = np.array([(2 * RADIUS * column + RADIUS * (row % 2), math.sqrt(3) * RADIUS * row)
                        for row in range(ROWS) for column in range(COLUMNS)])
     count = len(places)
     masses = np.full(count, 2500 * math.pi * RADIUS**2)
     return SimpleNamespace(count=count, positions=places, radii=np.full(count, RADIUS), masses=masses,
-                           inertias=0.5 * masses * RADIUS**2, supported=np.zeros(count, bool),
+                           inertias=0.5 * masses * RADIUS**2, fixed=np.zeros(count, bool),
                            pairs=contacts(places, np.full(count, RADIUS), 1e-6 * RADIUS))
 
 
 def bonded(rock, law, **loop):
     """`rock` alone in a new loop, all its pairs bonded. -> its engine of bonds."""
     O.reset()
-    scene.put_rock_materials(mu=law.mu)
-    scene.put_rock(rock)
-    scene.put_loop(kn=law.kn, kt=law.kt, mu=law.mu, **loop)
+    yade_scene.put_rock_materials(mu=law.mu)
+    yade_scene.put_rock(rock)
+    yade_scene.put_loop(kn=law.kn, kt=law.kt, mu=law.mu, **loop)
     bonds = Bonds(pairs=rock.pairs, law=law, clock=lambda: O.time)
-    scene.make_bonds(rock, bonds)
+    yade_scene.make_bonds(rock, bonds)
     return bonds
 
 
@@ -67,15 +66,15 @@ def moving_lattice(law, gradient, *first, ratcheting_free=True):
     -> its engine of bonds, and a function that gives the energy in no book (J)."""
     rock = lattice()
     bonds = bonded(rock, law, ratcheting_free=ratcheting_free)
-    friction = RockFriction(bonds=bonds, motion=Foresight(masses=rock.masses, inertias=rock.inertias, radii=rock.radii,
-                                                          held=rock.supported))
+    friction = RockFriction(bonds=bonds, motion=VelocityIncrement(masses=rock.masses, inertias=rock.inertias, radii=rock.radii,
+                                                          fixed=rock.fixed))
     for i, (x, y) in enumerate((rock.positions - rock.positions.mean(axis=0)) @ np.transpose(gradient)):
         O.bodies[i].state.vel = (x, y, 0.0)
     O.dt = TIME_STEP
-    all_engines = [*first, bonds, friction, LettingGo(bonds)]
-    engines.enlist(all_engines)
-    periods = {engine.name: 50 if engine.name == "letting_go" else 1 for engine in all_engines}
-    O.engines = O.engines[:-1] + engines.runners(periods) + O.engines[-1:]
+    all_engines = [*first, bonds, friction, Separation(bonds)]
+    base.register(all_engines)
+    periods = {engine.name: 50 if engine.name == "separation" else 1 for engine in all_engines}
+    O.engines = O.engines[:-1] + base.runners(periods) + O.engines[-1:]
     for engine in all_engines:
         engine.last_iteration = O.iter - 1
         engine.connect()
@@ -88,8 +87,8 @@ def moving_lattice(law, gradient, *first, ratcheting_free=True):
 
 def run(steps):
     O.run(steps, True)
-    if engines.failures:
-        raise engines.failures.pop()
+    if base.failures:
+        raise base.failures.pop()
 
 
 def fastest():
@@ -114,7 +113,7 @@ def torn(law, gradient, rate, steps, finer=1):
             "finite": bool(np.isfinite([body.state.pos for body in O.bodies]).all())}
 
 
-class Eraser(engines.Engine):
+class Eraser(base.Engine):
     """Erases a disc at certain steps, from within the loop and before the bonds are visited."""
 
     name = "eraser"
@@ -138,20 +137,20 @@ def erased(law):
     bonds, energy = moving_lattice(law, RATE * RN / KN / (2 * RADIUS * TIME_STEP) * (SHEAR + 0.2 * TEAR), Eraser(at))
     seen = {"carried": 0, "resting": 0, "broken": 0}
     for step in range(240):
-        held = {name: set(getattr(bonds, name)) for name in seen}
+        fixed = {name: set(getattr(bonds, name)) for name in seen}
         discs = set(range(len(O.bodies))) - {body.id for body in O.bodies if body}
         run(1)
         new = {i for i in range(len(O.bodies)) if O.bodies[i] is None} - discs
         for name in seen:
-            seen[name] += sum(bool(new & set(bonds.pairs[n])) for n in held[name])
+            seen[name] += sum(bool(new & set(bonds.pairs[n])) for n in fixed[name])
     # By hand, between two steps.
     O.bodies.erase(0)
-    bonds.let_go()
+    bonds.erase_separated()
     gone = [i for i in range(len(O.bodies)) if O.bodies[i] is None]
     touching = np.isin(bonds.pairs, gone).any(axis=1)
     before = energy()
     run(500)
-    return {"erased": len(gone), "seen": seen, "all gone": bool((bonds.status[touching] == GONE).all()),
+    return {"erased": len(gone), "seen": seen, "all gone": bool((bonds.status[touching] == SEPARATED).all()),
             "others alive": int((bonds.status[~touching] == INTACT).sum()), "cracks": len(bonds.cracks),
             "broken": int((bonds.status == BROKEN).sum()), "residual": (energy() - before) / before,
             "left over": sum(n in group for n in np.flatnonzero(touching) for group in
@@ -191,11 +190,11 @@ def rolled(law):
     radii = np.array([1.0, 1.3]) * RADIUS
     masses = 2500 * math.pi * radii**2
     rock = SimpleNamespace(count=2, positions=np.array([(0.0, 0.0), (radii.sum(), 0.0)]), radii=radii, masses=masses,
-                           inertias=0.5 * masses * radii**2, supported=np.zeros(2, bool), pairs=np.array([(0, 1)]))
+                           inertias=0.5 * masses * radii**2, fixed=np.zeros(2, bool), pairs=np.array([(0, 1)]))
     bonds = bonded(rock, law)
     O.dt, speed = TIME_STEP, 2 * math.pi * 3 / (3000 * TIME_STEP)
-    engines.enlist([bonds])
-    O.engines = O.engines[:-1] + engines.runners({"bonds": 1}) + O.engines[-1:]
+    base.register([bonds])
+    O.engines = O.engines[:-1] + base.runners({"bonds": 1}) + O.engines[-1:]
     bonds.connect()
     for body, sign in ((0, 1), (1, -1)):
         O.bodies[body].state.angVel = (0, 0, sign * speed * radii[0] / radii[body])
@@ -237,21 +236,21 @@ def spinning(corrected):
     """A chip of four spheres, pressed together and bonded so, that spins about a slanting axis and swings undamped, as
     soft and fast as in M 13. -> energy gained over that put in, after 20 ms; whether all bonds are there."""
     law = ElasticBrittle(kn=1.5e6, kt=1.5e6, mu=MU, Rn=1e6, Rt=1e6)
-    radius, spin, step = 13.5e-3, np.array([900.0, 1000.0, 1500.0]), 3e-5
+    radius, angular_velocity, step = 13.5e-3, np.array([900.0, 1000.0, 1500.0]), 3e-5
     places = 0.95 * radius / math.sqrt(2) * np.array([(1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1)])
     masses = np.full(4, 2500 * 4 / 3 * math.pi * radius**3)
     rock = SimpleNamespace(count=4, positions=places, radii=np.full(4, radius), masses=masses,
-                           inertias=0.4 * masses * radius**2, supported=np.zeros(4, bool),
+                           inertias=0.4 * masses * radius**2, fixed=np.zeros(4, bool),
                            pairs=contacts(places, np.full(4, radius), 0.0))
     bonds = bonded(rock, law, ratcheting_free=False)
     chance = np.random.default_rng(1)
     for body, place in zip(O.bodies, places):
-        body.state.vel = tuple(np.cross(spin, place) + chance.normal(0, 0.5, 3))
-        body.state.angVel = tuple(spin + chance.normal(0, 20, 3))
+        body.state.vel = tuple(np.cross(angular_velocity, place) + chance.normal(0, 0.5, 3))
+        body.state.angVel = tuple(angular_velocity + chance.normal(0, 20, 3))
     turning = Turning(bonds=bonds, radii=rock.radii)
-    engines.enlist([turning, bonds])
-    first = engines.runners({"turning": 1}) if corrected else []
-    O.engines = first + O.engines[:-1] + engines.runners({"bonds": 1}) + O.engines[-1:]
+    base.register([turning, bonds])
+    first = base.runners({"shear_rotation": 1}) if corrected else []
+    O.engines = first + O.engines[:-1] + base.runners({"bonds": 1}) + O.engines[-1:]
     bonds.connect()
     O.dt = step
 

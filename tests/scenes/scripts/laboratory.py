@@ -3,18 +3,13 @@
     yade -n -x laboratory.py --specimen lattice|chain [--name value ...]
 """
 import math
-import os
-import sys
 
-ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(sys.argv[0])))))
-sys.path.insert(0, ROOT)
+import numpy as np
 
-import numpy as np  # noqa: E402
-
-from calibration.laboratory import PARAMETERS, UniaxialTest  # noqa: E402
-from rockwear import run  # noqa: E402
-from rockwear.parameters import Parameter, choice  # noqa: E402
-from rockwear.rock import Arranged  # noqa: E402
+from calibration.laboratory.uniaxial import PARAMETERS, UniaxialTest
+from rockwear.run import main as run
+from rockwear.kernels.parameter import Parameter, choice
+from rockwear.model.rock import Arranged
 
 ROWS, COLUMNS, RADIUS = 7, 36, 1e-3
 

@@ -4,44 +4,42 @@
 """
 import json
 import math
-import os
-import sys
 
 import numpy as np
 from yade import FrictViscoMat, O, utils
 
-sys.path.insert(0, os.path.abspath(os.path.join(os.path.dirname(sys.argv[0]), "../../..")))
-
-from rockwear import engines, scene  # noqa: E402
-from rockwear.engines.facets import FacetContact  # noqa: E402
-from rockwear.engines.motion import Foresight  # noqa: E402
-from rockwear.facet_tool import FacetTool  # noqa: E402
-from rockwear.kernels.rigid_motion import Straight  # noqa: E402
+from rockwear.engines import base
+from rockwear.scenes import yade_scene
+from rockwear.scenes.tool_bodies import FacetBodies
+from rockwear.engines.facet_contact import FacetContact
+from rockwear.engines.velocity_increment import VelocityIncrement
+from rockwear.model.facet_tool import FacetTool
+from rockwear.kernels.rigid_motion import Straight
 
 SLOPE, RADIUS, KN, LOAD, MU = math.radians(5), 1.25e-3, 1e8, 1e4, 1e-9
 MASS = 2500 * math.pi * RADIUS**2
 rise = 0.02 * math.tan(SLOPE)
 tool = FacetTool.of_outline(np.array([[-0.02, 0], [0, rise], [0.02, 0], [0.02, 0.03], [-0.02, 0.03]]), segment=1.0, density=7830.0)
 
-scene.put_rock_materials(mu=0.8, loose=FrictViscoMat)
-scene.put_steel(mu=MU, contact_damping=0.0)
+yade_scene.put_rock_materials(mu=0.8, loose=FrictViscoMat)
+yade_scene.put_tool_material(mu=MU, contact_damping=0.0)
 # As deep as the load presses it, and beside the middle, so that it swings to and fro over the edge.
 aside = 0.2e-3
 deep = RADIUS - LOAD / KN
 body = utils.sphere((aside, rise - aside * math.tan(SLOPE) - deep / math.cos(SLOPE), 0), RADIUS, material="loose rock",
-                    mask=scene.ROCK_MASK)
+                    mask=yade_scene.ROCK_MASK)
 body.state.mass, body.state.inertia = MASS, (MASS * RADIUS**2,) * 3
 body.state.blockedDOFs = "zXYZ"
 O.bodies.append(body)
 O.forces.setPermF(0, (0, LOAD, 0))
-scene.put_loop_with_facets(kn=20e9, kt=20e9, mu=0.8, tool=(KN, KN, MU))
-bodies = scene.FacetBodies(tool, Straight(start=(0.0, 0.0), velocity=(0.0, 0.0)))
+yade_scene.put_loop_with_facets(kn=20e9, kt=20e9, mu=0.8, tool=(KN, KN, MU))
+bodies = FacetBodies(tool, Straight(start=(0.0, 0.0), velocity=(0.0, 0.0)))
 contact = FacetContact(tool=bodies, neighbours=tool.boundary.neighbours(),
-                       motion=Foresight(masses=np.array([MASS]), inertias=np.ones(1), radii=np.array([RADIUS]), held=np.zeros(1, bool)))
+                       motion=VelocityIncrement(masses=np.array([MASS]), inertias=np.ones(1), radii=np.array([RADIUS]), fixed=np.zeros(1, bool)))
 bodies.add(range(tool.count))
 O.dt = 0.4 * math.sqrt(MASS / KN)
-engines.enlist([contact])
-O.engines = O.engines[:-1] + engines.runners({"tool_contact": 1}) + O.engines[-1:]
+base.register([contact])
+O.engines = O.engines[:-1] + base.runners({"tool_contact": 1}) + O.engines[-1:]
 contact.connect()
 
 
@@ -54,8 +52,8 @@ O.run(2, True)
 first, gained, places = energy(), [], []
 for _ in range(1000):
     O.run(20, True)
-    if engines.failures:
-        raise engines.failures[0]
+    if base.failures:
+        raise base.failures[0]
     gained.append(energy() - first)
     places.append(O.bodies[0].state.pos[0])
 print(json.dumps({"gained": float(np.abs(gained).max()), "in_the_spring": 0.5 * LOAD**2 / KN, "aside": float(np.abs(places).max()),

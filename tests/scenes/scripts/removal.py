@@ -7,17 +7,15 @@ import math
 import os
 import sys
 
-ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(sys.argv[0])))))
-sys.path.insert(0, ROOT)
+import numpy as np
+from scipy.spatial import cKDTree
+from yade import InsertionSortCollider, NewtonIntegrator, O, PyRunner
 
-import numpy as np  # noqa: E402
-from scipy.spatial import cKDTree  # noqa: E402
-from yade import InsertionSortCollider, NewtonIntegrator, O, PyRunner  # noqa: E402
-
-from rockwear import engines, parameters  # noqa: E402
-from rockwear.cutting import PARAMETERS, Cutting  # noqa: E402
-from rockwear.kernels.wear_laws import WORK  # noqa: E402
-from rockwear.parameters import Parameter, flag  # noqa: E402
+from rockwear.engines import access
+from rockwear.run import parameters
+from rockwear.scenes.cutting import PARAMETERS, Cutting
+from rockwear.kernels.wear_laws import WORK
+from rockwear.kernels.parameter import Parameter, flag
 
 BAND = 1.5e-3, 3e-3
 """Heights in the tool's own frame (m) between which the saw takes everything away: below all that the shank holds."""
@@ -73,7 +71,7 @@ def watch_newcomers():
 def unseen():
     """Bodies that the collider, once it has run again, does not know."""
     O.run(1, True)
-    listed = engines.yade_engine(InsertionSortCollider).dumpBounds()[0]
+    listed = access.yade_engine(InsertionSortCollider).dumpBounds()[0]
     return {body.id for body in O.bodies if body and body.bound} - {abs(number) for _, number in listed}
 
 
@@ -101,9 +99,9 @@ while not scene.stage_done:
 scene.wear.act()
 if scene.heat:
     scene.heat.act()
-audits = {name: book for name, (book, _) in scene.audits().items()}
+balances = {name: balance for name, (balance, _) in scene.balances().items()}
 print("JSON" + json.dumps({"removed": int(np.sum(~scene.tool.erosion.alive)), "overlaps": found, "pushes": pushes, "below": below, "unlisted": sorted(unlisted),
-                           "audits": audits, "stored_heat": float(scene.heat.network.heat_content)},
+                           "balances": balances, "stored_heat": float(scene.heat.network.heat_content)},
                           default=lambda x: x.item()))
 sys.stdout.flush()
 os._exit(0)

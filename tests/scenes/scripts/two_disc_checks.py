@@ -4,17 +4,15 @@ import os
 import sys
 from unittest import mock
 
-ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(sys.argv[0])))))
-sys.path.insert(0, ROOT)
+import numpy as np
+from yade import O, Vector3, utils
 
-import numpy as np  # noqa: E402
-from yade import O, Vector3, utils  # noqa: E402
-
-from rockwear import engines  # noqa: E402
-from rockwear.engines.bonds import Bonds, Carried  # noqa: E402
-from rockwear.kernels.bond_laws import (ElasticBrittle, ElasticDamage, ElastoPlasticSoftening,  # noqa: E402
-                                        NonlinearElastoPlastic, Parabolic)
-from rockwear.two_disc import lead, programme  # noqa: E402
+from rockwear.engines import base
+from rockwear.engines.bonds import Bonds
+from rockwear.engines.softening import SofteningBond
+from rockwear.kernels.bond_laws import (
+    ElasticBrittle, ElasticDamage, ElastoPlasticSoftening, NonlinearElastoPlastic, Parabolic)
+from rockwear.scenes.two_disc import lead, programme
 
 KN, KT, RN, RT, H, MU = 2e10, 1e10, 1e5, 6e4, 1e10, 0.839
 COMMON = dict(kn=KN, kt=KT, Rn=RN, Rt=RT, mu=MU)
@@ -28,7 +26,7 @@ END_N, END_T = RN / KN + RN / H, RT / KT + RT / H
 
 def follow(law, un, ut):
     """(n, 3) forces of the law itself along a path with two tangential components."""
-    bond, rows = law.virgin(), []
+    bond, rows = law.initial_state(), []
     for opening, shift in zip(un.tolist(), ut.tolist()):
         Fn, Ft = law.respond(bond, opening, tuple(shift))
         rows.append((Fn, *Ft))
@@ -62,7 +60,7 @@ def random_axes(rng):
 
 def let_loose():
     """Lead the pair no longer."""
-    O.engines = [*O.engines[:3], *engines.runners({"bonds": 1}), O.engines[-1]]
+    O.engines = [*O.engines[:3], *base.runners({"bonds": 1}), O.engines[-1]]
 
 
 def programmes(law):
@@ -171,7 +169,7 @@ def resuming(law):
             O.load(path)
             bonds = Bonds(pairs=np.array([[0, 1]]), law=law, clock=lambda: O.time)
             bonds.restore(state)
-            engines.enlist([bonds])
+            base.register([bonds])
             bonds.connect()
         rows = []
         for _ in range(150):
@@ -204,11 +202,11 @@ def broken_on_purpose():
         hand_over(self)
         self.phys.tanFrictionAngle = 0.0
 
-    hand_over, law = Carried.hand_over, LAWS["damage"]
-    patches = {"nothing carried": mock.patch.object(Carried, "advance", lambda self, ut, forces: None),
+    hand_over, law = SofteningBond.hand_over, LAWS["damage"]
+    patches = {"nothing carried": mock.patch.object(SofteningBond, "advance", lambda self, ut, forces: None),
                "shear forgotten": mock.patch.object(Bonds, "_shear_displacement", no_shear),
                "a step late": mock.patch.object(Bonds, "act", a_step_late),
-               "no friction": mock.patch.object(Carried, "hand_over", no_friction)}
+               "no friction": mock.patch.object(SofteningBond, "hand_over", no_friction)}
     ut = np.linspace(0.0, 30e-6, 203)
     found = {}
     for name, patch in patches.items():
@@ -222,7 +220,7 @@ checks = {
     "plane": {name: random_paths(law, True) for name, law in LAWS.items()},
     "space": {name: random_paths(law, False) for name, law in LAWS.items()},
     "swapping": {name: swapping(law) for name, law in LAWS.items()},
-    "turning": {name: turning(law) for name, law in LAWS.items()},
+    "shear_rotation": {name: turning(law) for name, law in LAWS.items()},
     "turning in half the steps": {name: turning(law, 500) for name, law in LAWS.items()},
     "coulomb": {name: coulomb_afterwards(LAWS[name]) for name in LINEAR},
     "work": {name: work_until_gone(LAWS[name]) for name in ("damage", "elasto-plastic")},

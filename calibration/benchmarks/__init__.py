@@ -1,0 +1,1 @@
+"""Speed against error: python3 -m calibration.benchmarks FOLDER."""

@@ -1,0 +1,92 @@
+"""What softening bonds cost: the uniaxial test with each bond law, in turns, its time a step over that of brittle ones.
+
+    yade -n -x -j1 calibration/benchmarks/law_cost.py --out DIR [--turns 5] [--name value ...]
+
+The parameters are those of yade_scripts/uniaxial.py. All laws run from the first load to failure, one after the other,
+`turns` times; a law is compared with the brittle run of the same turn, and medians over the turns are kept. Beside the
+wall time there is the process's own time, which a busy machine disturbs less. DIR/law_cost.json gets one row a law,
+with the ratio along the test beside the share of bonds past their peak. A YADE script, started by bench.py.
+"""
+import json
+import os
+import sys
+import time
+from pathlib import Path
+from statistics import median
+
+from calibration.laboratory.uniaxial import PARAMETERS, UniaxialTest
+from rockwear.run import parameters
+from rockwear.run import main as run
+from rockwear.engines.base import RunEnded
+from rockwear.kernels.bond_laws import LINEAR_LAWS
+from rockwear.kernels.parameter import Parameter, integer
+
+TURNS = Parameter("turns", 5, "", integer(1), "runs of each law")
+
+
+def stretches(values):
+    """One run to failure. -> a dict for each stretch between canonical points, all of them of one length."""
+    scene = UniaxialTest(values)
+    scene.build()
+    rows, failed = [], False
+    while not (failed or scene.stage_done):
+        before, begin, begin_cpu = scene.step, time.perf_counter(), time.process_time()
+        try:
+            scene.run_chunk()
+        except RunEnded:
+            failed = True
+        wall, cpu = time.perf_counter() - begin, time.process_time() - begin_cpu
+        softening = scene.bonds.softening()
+        rows.append({"steps": scene.step - before, "wall": wall, "cpu": cpu, "stress": scene.stress,
+                     "past_peak": float((softening > 0).mean()), "broken": float((softening == 1).mean()),
+                     "carried": len(scene.bonds.carried)})
+    return rows
+
+
+def a_step(rows, clock):
+    """Seconds a step, mean over a run; clock: "wall" or "cpu"."""
+    return sum(row[clock] for row in rows) / sum(row["steps"] for row in rows)
+
+
+def table(runs, H):
+    """One row a law: share of bonds past their peak (mean over the run, and at its end), ms a step, ratio to brittle.
+
+    runs: [{law: stretches}], one a turn. curve: stress (Pa), share past the peak and ratio (cpu) of every stretch.
+    """
+    found = []
+    for law in runs[0]:
+        turns = [turn[law] for turn in runs]
+        row = {"bond_law": law, "H": None if law == "brittle" else H}
+        for clock in ("wall", "cpu"):
+            row[f"ms_a_step_{clock}"] = 1e3 * median(a_step(rows, clock) for rows in turns)
+            row[f"ratio_{clock}"] = median(a_step(turn[law], clock) / a_step(turn["brittle"], clock) for turn in runs)
+        # A law's runs are equal bit for bit: stretch by stretch they are at the same place.
+        whole = [a_step(turn["brittle"], "cpu") for turn in runs]
+        row["curve"] = [{"stress": of_turns[0]["stress"], "past_peak": of_turns[0]["past_peak"],
+                         "ratio": median(a_step([one], "cpu") / mean for one, mean in zip(of_turns, whole))}
+                        for of_turns in zip(*turns)]
+        past = [point["past_peak"] for point in row["curve"]]
+        row.update(past_peak_mean=sum(past) / len(past), past_peak_end=past[-1])
+        found.append(row)
+    return found
+
+
+def main():
+    """Measure, print and write."""
+    values = parameters.read([*PARAMETERS, *run.COMMON, TURNS], sys.argv[1:])
+    folder = Path(values["out"] or "out/law_cost")
+    folder.mkdir(parents=True, exist_ok=True)
+    runs = [{law: stretches({**values, "bond_law": law}) for law in LINEAR_LAWS} for _ in range(values["turns"])]
+    rows = table(runs, values["H"])
+    (folder / "law_cost.json").write_text(json.dumps({"turns": values["turns"], "rows": rows}, indent=1), encoding="utf-8")
+    print("law           H, N/m   past peak, mean   at the end   ms a step   ratio: wall     cpu   cpu, worst stretch")
+    for row in rows:
+        H = f"{row['H']:.3g}" if row["H"] else "-"
+        worst = max(point["ratio"] for point in row["curve"])
+        print(f"{row['law']:10}{H:>10}{row['past_peak_mean']:18.3f}{row['past_peak_end']:13.3f}"
+              f"{row['ms_a_step_wall']:12.3f}{row['ratio_wall']:14.2f}{row['ratio_cpu']:8.2f}{worst:21.2f}")
+    sys.stdout.flush()
+    os._exit(0)
+
+
+main()

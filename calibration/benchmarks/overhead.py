@@ -1,0 +1,51 @@
+"""What our engines cost on top of YADE's own step: the same stretch of the cut with them alive and dead, in turns.
+
+    yade -n -x -j1 calibration/benchmarks/overhead.py --out DIR [--name value ...]
+
+Both are run five times from one saved state; DIR/overhead.json gets the medians. A YADE script, started by bench.py.
+"""
+import json
+import os
+import sys
+import time
+from pathlib import Path
+from statistics import median
+
+from yade import O, PyRunner
+
+from rockwear.run import parameters
+from rockwear.run import main as run
+from rockwear.scenes.cutting import PARAMETERS, Cutting
+
+TURNS, STEPS, WARM_UP = 5, 3000, 0.0015
+
+
+def main():
+    """Measure and write."""
+    values = parameters.read([*PARAMETERS, *run.COMMON], sys.argv[1:])
+    folder = Path(values["out"])
+    folder.mkdir(parents=True, exist_ok=True)
+    scene = Cutting(values)
+    scene.build()
+    while scene.time < WARM_UP:
+        scene.run_chunk()
+    state = scene.state()
+    scene.save(folder, folder)
+    seconds = {"alive": [], "dead": []}
+    for _ in range(TURNS):
+        for kind in seconds:
+            scene.restore(state, folder, folder)
+            for engine in O.engines:
+                engine.dead = isinstance(engine, PyRunner) and kind == "dead"
+            O.run(200, True)
+            begin = time.perf_counter()
+            O.run(STEPS, True)
+            seconds[kind].append((time.perf_counter() - begin) / STEPS)
+    medians = {kind: median(times) for kind, times in seconds.items()}
+    (folder / "overhead.json").write_text(json.dumps({
+        "seconds_a_step": seconds, "median": medians, "overhead": medians["alive"] / medians["dead"] - 1,
+        "bonds": len(scene.rock.pairs), "cracks": len(scene.bonds.cracks), "surface": len(scene.tool.erosion.surface)}, indent=1), encoding="utf-8")
+    os._exit(0)
+
+
+main()

@@ -1,0 +1,71 @@
+"""Scenes run in processes of their own, so many at a time, each into its folder."""
+import subprocess
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+from rockwear.run.checkpoint import digest
+from rockwear.report.folder import RunFolder
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+class RunFailed(RuntimeError):
+    """A scene ended with an exit code other than 0."""
+
+
+class Runs:
+    """Runs in subfolders of `folder`, `at_once` at a time.
+
+    With `keep`, those that ended well with the same values, and the same files, stay as they are. Use it as a context: an exception within
+    lets the runs under way end, and starts no others.
+    """
+
+    def __init__(self, folder, *, at_once=2, keep=False):
+        self.folder, self.keep = Path(folder), keep
+        self.pool = ThreadPoolExecutor(at_once)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, kind, error, trace):
+        self.pool.shutdown(wait=True, cancel_futures=kind is not None)
+
+    def start(self, name, script, **values):
+        """Queue a run of `script` (a path from the root of the repository). -> Future of its RunFolder.
+
+        The future raises RunFailed where the scene does not end well.
+        """
+        return self.pool.submit(self._run, self.folder / name, script, values)
+
+    def _run(self, folder, script, values):
+        if self.keep and finished(folder, values):
+            return RunFolder(folder)
+        words = [word for name, value in values.items() for word in (f"--{name}", str(value))]
+        if self.keep and (folder / "checkpoint").exists() and not (folder / "summary.json").exists():
+            words.append("--resume")
+        done = subprocess.run(["yade", "-n", "-x", "-j1", str(ROOT / script), "--out", str(folder), *words],
+                              capture_output=True, encoding="utf-8", stdin=subprocess.DEVNULL)
+        if done.returncode:
+            said = done.stderr.strip().splitlines() or ["nothing said"]
+            errors = [line for line in said if line.startswith("error: ")]
+            raise RunFailed(f"{folder.name} ended with {done.returncode}: {(errors or said)[-1]}")
+        return RunFolder(folder)
+
+
+def finished(folder, values):
+    """True for a folder with the summary of a run that ended well, with these values and these files."""
+    try:
+        summary = RunFolder(folder).summary
+        parameters = summary["parameters"]
+        same_files = all(digest(Path(parameters[name])) == found for name, found in summary["files"].items())
+    except (OSError, ValueError, KeyError):
+        return False
+    return summary["exit_code"] == 0 and same_files and all(
+        name in parameters and _same(parameters[name], value) for name, value in values.items())
+
+
+def _same(stored, value):
+    try:
+        return float(stored) == float(value)
+    except (TypeError, ValueError):
+        return str(stored).lower() == str(value).lower()

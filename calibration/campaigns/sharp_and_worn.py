@@ -1,0 +1,183 @@
+"""Sharp and worn: what a tooth's wear does to the cut.
+
+    python3 -m calibration.campaigns.sharp_and_worn WORN_RUN DIR [SEED ...]
+
+WORN_RUN is the folder of a finished run of a wearing tooth (make campaign-wear leaves some). Its outline when new and at
+equal steps of its mass loss becomes a tooth that wears no more; each cuts the same fresh specimens at the same depth, one
+packing a seed. Leaves in DIR the outlines, the runs (finished ones stay), sharp_and_worn.csv, a figure and a page: cutting
+and thrust force, specific energy and chip size against the mass lost, beside Evans and Nishimatsu.
+"""
+import math
+import sys
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+
+from calibration.campaigns.runs import RunFailed, Runs
+from calibration.campaigns.two_tools import scatter
+from rockwear.kernels import cutting_theory
+from rockwear.kernels.checks import ParameterError, require
+from rockwear.report import cutting, page, plots, shapes
+from rockwear.report.folder import RunFolder
+
+SHAPES = 4
+"""The new tooth and so many minus one worn ones."""
+SEEDS = 1, 2, 3, 4
+"""The same cut of the same packing, on another way from its first contacts on, differs by a third."""
+CUT = dict(cycles=0, start_up=0.012, wear_acceleration=0, heat="false", grading_factor=3)
+"""48 mm of cut at 4 m/s in graded rock; no wear, no heat."""
+ROCK_OF_THE_CUT = ("velocity depth_of_cut kn kt Rn Rt mu tool_kn tool_kt tool_mu contact_damping bond_law H tool_radius_min "
+                   "tool_radius_max").split()
+STRENGTH = {"compressive_strength": 164e6, "tensile_strength": 30.4e6}
+"""Of M's rock in our laboratory (calibration/results/uniaxial.md)."""
+QUANTITIES = {"mean_cutting_force": ("mean cutting force", "N/m"), "peak_cutting_force": ("peak cutting force", "N/m"),
+              "mean_thrust_force": ("mean thrust force", "N/m"),
+              "specific_energy": ("specific energy", "J/m3"), "chip_size": ("median chip, by mass", "m")}
+
+
+def stages(run):
+    """Snapshots of the new tooth and at equal steps of its mass loss. -> [(share of the mass lost, snapshot)]."""
+    volumes = run.model["tool_volumes"]
+    lost = np.array([volumes[~run.snapshot(k)["alive"]].sum() for k in range(len(run.times))]) / volumes.sum()
+    chosen = [int(np.argmin(abs(lost - share * lost[-1]))) for share in np.linspace(0, 1, SHAPES)]
+    return [(float(lost[k]), run.snapshot(k)) for k in chosen]
+
+
+def outline(run, shot):
+    """(k, 2) m: what is left of the tooth, its lowest point at y = 0."""
+    polygon = max(cutting.tool_outlines(run, shot), key=len)
+    return polygon - [0.0, polygon[:, 1].min()]
+
+
+def effective_rake(polygon, depth):
+    """Angle (rad) from the vertical of the line from the tip to where the front leaves the rock; negative when blunt."""
+    following = np.roll(polygon, -1, axis=0)
+    through = (polygon[:, 1] < depth) != (following[:, 1] < depth)
+    (x, y), (x_next, y_next) = polygon[through].T, following[through].T
+    front = np.max(x + (depth - y) / (y_next - y) * (x_next - x))
+    return math.atan2(polygon[np.argmin(polygon[:, 1]), 0] - front, depth)
+
+
+def chip_size(run):
+    """Diameter (m) of the disc of a chip's area, the median by mass over all chips of more than one disc."""
+    shot, model = run.snapshot(-1), run.model
+    loose = shapes.chips(len(model["rock_radii"]), model["bonds"], shot["status"] == 0, model["rock_fixed"])
+    number = shapes.pieces(len(model["rock_radii"]), model["bonds"], shot["status"] == 0)
+    count = np.bincount(number[loose], minlength=number.max() + 1)
+    area = np.bincount(number[loose], math.pi * model["rock_radii"][loose]**2, number.max() + 1)
+    area = np.sort(area[count > 1])
+    if not len(area):
+        return math.nan
+    return 2 * math.sqrt(area[np.searchsorted(np.cumsum(area), 0.5 * area.sum())] / math.pi)
+
+
+def measure(run):
+    """{quantity: value} of one cut."""
+    return {**{name: run.result(name) for name in QUANTITIES if name != "chip_size"}, "chip_size": chip_size(run)}
+
+
+def theory(rake, run):
+    """{name: cutting force, N/m} of the classical theories, nan beyond their range."""
+    friction = math.atan(run.parameter("tool_mu", 0.3))
+    cohesion, internal = cutting_theory.mohr_coulomb(**STRENGTH)
+    depth = run.parameter("depth_of_cut", math.nan)
+    found = {"Evans": lambda: cutting_theory.evans(tensile_strength=STRENGTH["tensile_strength"], depth=depth, rake=rake),
+             "Nishimatsu": lambda: cutting_theory.nishimatsu(
+                 shear_strength=cohesion, internal_friction=internal, depth=depth, rake=rake, friction_angle=friction)[0]}
+
+    def value(force):
+        try:
+            return force()
+        except ValueError:
+            return math.nan
+    return {name: value(force) for name, force in found.items()}
+
+
+def figure(teeth, rows):
+    """Outlines, and the four quantities against the mass lost."""
+    drawn, panels = plots.canvas(12, 7.2, 2, 3)
+    colours = matplotlib.colormaps["plasma"](np.linspace(0, 0.85, len(teeth)))
+    for tooth, colour in zip(teeth, colours):
+        closed = np.vstack([tooth["outline"], tooth["outline"][:1]])
+        panels[0].plot(*plots.MM * closed.T, color=colour, label=f"{100 * tooth['lost']:.1f} % lost")
+    low = plots.MM * min(tooth["outline"][:, 1].min() for tooth in teeth)
+    tip = plots.MM * teeth[0]["outline"][np.argmin(teeth[0]["outline"][:, 1]), 0]
+    plots.frame(panels[0], (tip - 32, tip + 12, low - 2, low + 32), "outlines")
+    panels[0].legend(fontsize=8)
+    for axes, (name, (label, unit)) in zip(panels[1:], QUANTITIES.items()):
+        shown, factor, _ = page.SHOWN.get(unit, (unit, 1.0, 0.0))
+        lost = 100 * np.array([row["lost"] for row in rows])
+        values = factor * np.array([row[name] for row in rows])
+        axes.plot(lost, values, "o", color="#c8a15a", markersize=4, label="one packing")
+        middle, error = np.array([scatter(values[lost == x]) for x in np.unique(lost)]).T
+        axes.errorbar(np.unique(lost), middle, error, color="#444444", capsize=3, label="mean, its standard error")
+        axes.set(title=label, xlabel="mass lost / %", ylabel=shown, ylim=(0, 1.1 * np.nanmax(values)))
+        if name == "peak_cutting_force":
+            # The theories are of the force at which a chip breaks off, and far from it for a blunt tool.
+            for theory_name, style in (("Evans", "s:"), ("Nishimatsu", "^--")):
+                axes.plot([100 * tooth["lost"] for tooth in teeth], [factor * tooth[theory_name] for tooth in teeth], style,
+                          markersize=4, color="#2c6e91", label=theory_name)
+            highest = np.nanmax([values.max(), *(factor * tooth[name] for tooth in teeth for name in ("Evans", "Nishimatsu"))])
+            axes.set(yscale="log", ylim=(0.3 * np.nanmin(values), 2 * highest))
+            axes.legend(fontsize=8)
+    return drawn
+
+
+def main(worn_run, folder, seeds=SEEDS):
+    """Run what is missing, and write the page."""
+    folder, run = Path(folder), RunFolder(worn_run)
+    require({"tool_volumes", "rock_radii"} <= set(run.model) and len(run.times), "WORN_RUN", str(worn_run),
+            "the folder of a cut in the plane with a tool of particles")
+    (folder / "outlines").mkdir(parents=True, exist_ok=True)
+    common = {name: run.parameters[name] for name in ROCK_OF_THE_CUT if name in run.parameters}
+    teeth = []
+    for number, (lost, shot) in enumerate(stages(run)):
+        polygon = outline(run, shot)
+        path = folder / "outlines" / f"tooth_{number}.csv"
+        np.savetxt(path, polygon, delimiter=",", header="x [m],y [m]", comments="")
+        rake = effective_rake(polygon, run.parameter("depth_of_cut", math.nan))
+        teeth.append({"lost": lost, "outline": polygon, "path": path, "rake": rake, **theory(rake, run)})
+    with Runs(folder, keep=True) as runs:
+        cuts = {(number, seed): runs.start(f"tooth_{number}-{seed}", "yade_scripts/tooth_cycles.py", seed=seed,
+                                           outline=tooth["path"], **common, **CUT)
+                for seed in seeds for number, tooth in enumerate(teeth)}
+        rows = [{"tooth": number, "lost": teeth[number]["lost"], "seed": seed, **measure(future.result())}
+                for (number, seed), future in cuts.items()]
+    lines = [",".join(rows[0])] + [",".join(f"{value:.6g}" for value in row.values()) for row in rows]
+    (folder / "sharp_and_worn.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
+    write_page(folder, teeth, rows)
+
+
+def write_page(folder, teeth, rows):
+    """report.html with the figure and a table, and the figure as a file."""
+    with matplotlib.rc_context(plots.STYLE):
+        drawn = figure(teeth, rows)
+        path = folder / "sharp_and_worn.png"
+        drawn.savefig(path)
+    table = []
+    for number, tooth in enumerate(teeth):
+        of = [row for row in rows if row["tooth"] == number]
+        cells = []
+        for name, (_, unit) in QUANTITIES.items():
+            middle, error = scatter(np.array([row[name] for row in of]))
+            cells.append(f"{page.quantity(middle, unit)} ± {page.percent(error, middle)}")
+        table.append([f"{100 * tooth['lost']:.1f} % lost", f"{math.degrees(tooth['rake']):.0f}°", *cells,
+                      *(page.quantity(tooth[name], "N/m") for name in ("Evans", "Nishimatsu"))])
+    header = ("tooth", "effective rake", *(label for label, _ in QUANTITIES.values()), "Evans", "Nishimatsu")
+    (folder / "report.html").write_text(page.document("sharp and worn", f"{len(rows)} cuts", [page.Section(
+        "What wear does to the cut", "The same specimens cut at the same depth by the tooth as it was new and as it wore; "
+        "± is the standard error of the mean over packings. The theories are of the force at which a chip breaks off, beside the "
+        "peak, and take the rake of the line from the lowest point to where the front leaves the rock, and the laboratory's "
+        "strengths.", [page.image(path), page.table(table, header)])]), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    matplotlib.use("Agg")
+    if len(sys.argv) < 3:
+        sys.exit(__doc__)
+    try:
+        main(sys.argv[1], sys.argv[2], tuple(map(int, sys.argv[3:])) or SEEDS)
+    except (OSError, ParameterError, RunFailed) as error:
+        print(f"error: {error}", file=sys.stderr)
+        sys.exit(1 if isinstance(error, RunFailed) else 2)

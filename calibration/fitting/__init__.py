@@ -1,0 +1,1 @@
+"""From laboratory tests to parameters."""

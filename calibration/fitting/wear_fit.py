@@ -1,0 +1,248 @@
+"""From a wear test in the laboratory to k (M 6.6): your own rows of force, area, distance, depth and temperature.
+
+    python3 -m calibration.fitting.wear_fit [FILE.csv] [--law pressure] [--out DIR] ...       (--help)
+
+A row a test, a block pressed with a known force and slid over a known distance. The header says `name [unit]`:
+
+    steel          MET71, MET91, or any name where `hardness` is given
+    force          N, kN            area      mm2, cm2, m2         or pressure (Pa, MPa), which goes before both
+    distance       m, km            depth     um, mm, m            worn over that distance
+    temperature    degC, K          hardness  HB, Pa, MPa          goes before steel and temperature
+    friction       N, kN            measured friction force; without it mu times the force
+
+`<name> error [unit]` is the standard error of a column, as far as it is known. Without FILE, the four rows of M 6.6 are
+taken, with half a last digit for errors. M's depths are differences: 2.0 - 0.4 mm and 6 - 4 mm, over 100 m. M's own k
+take 10 MPa for a HB (--brinell 1e7 follows it); M 6.14 and 6.15 have their two results interchanged.
+"""
+import argparse
+import csv
+import json
+import sys
+from pathlib import Path
+
+import numpy as np
+
+from rockwear.kernels.archard import BRINELL, KELVIN, MET71, MET91
+from rockwear.kernels.checks import ParameterError, finite, positive, require
+from rockwear.kernels.wear_laws import LAWS, LaboratoryTest, PowerLaw, SumOfModes, wear_law
+
+EXAMPLE = Path(__file__).with_name("wear_tests.csv")
+STEELS = {"MET71": MET71, "MET91": MET91}
+UNITS = {"force": {"N": 1, "kN": 1e3}, "friction": {"N": 1, "kN": 1e3}, "area": {"mm2": 1e-6, "cm2": 1e-4, "m2": 1},
+         "pressure": {"Pa": 1, "MPa": 1e6}, "distance": {"m": 1, "km": 1e3}, "depth": {"um": 1e-6, "mm": 1e-3, "m": 1},
+         "temperature": {"degC": 1, "K": 1}, "hardness": {"HB": BRINELL, "Pa": 1, "MPa": 1e6}}
+SI = {"force": "N", "friction": "N", "area": "m2", "pressure": "Pa", "distance": "m", "depth": "m", "hardness": "Pa"}
+NEEDED = "distance", "depth"
+
+
+def read(file, brinell=BRINELL):
+    """[{name: SI value}] of a CSV file's rows; errors as "name error". Raises ParameterError with column and line."""
+    try:
+        with open(file, newline="", encoding="utf-8-sig") as lines:
+            rows = list(csv.DictReader(lines, skipinitialspace=True))
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        raise ParameterError("file", str(file), f"a CSV file that can be read ({error})") from None
+    require(rows, "file", str(file), "a CSV file with a header and at least one row")
+    return [_row(row, number, brinell) for number, row in enumerate(rows, 2)]
+
+
+def _row(row, line, brinell):
+    found = {}
+    for head, text in row.items():
+        if head is None or text is None:
+            raise ParameterError(f"line {line}", len(row), "as long as the header")
+        name, _, unit = (word.strip(" ]") for word in head.partition("["))
+        if name == "steel":
+            found["steel"] = text.strip()
+            continue
+        quantity = name.removesuffix(" error")
+        if quantity not in UNITS or unit not in UNITS[quantity]:
+            options = ", ".join(UNITS.get(quantity, UNITS))
+            raise ParameterError(f"column {name}", unit, f"one of {options}{'' if quantity in UNITS else ', or steel'}")
+        if not text.strip():
+            continue
+        value = finite(f"{name} in line {line}", text, unit)
+        require(value >= 0 or not name.endswith(" error"), f"{name} in line {line}", value, "at least 0", unit)
+        if unit == "degC" and quantity == name:
+            value += KELVIN
+        found[name] = value * (brinell if unit == "HB" else UNITS[quantity][unit])
+    return found
+
+
+def tests_of(rows, *, mu, brinell=BRINELL):
+    """LaboratoryTest of rows of `read`. Raises ParameterError for what is missing, not positive, or outside a table."""
+    columns = [_measured(row, mu, brinell) for row in rows]
+    return LaboratoryTest(**{name: np.array([column[name] for column in columns]) for name in columns[0]})
+
+
+def _measured(row, mu, brinell):
+    """{field of LaboratoryTest: value} of a row."""
+    for name in NEEDED:
+        require(name in row, name, "nothing", "given in every row")
+    of = {name: _relative_error(row, name) for name in SI}
+    if "pressure" in row:
+        pressure = row["pressure"]
+    else:
+        for name in ("force", "area"):
+            require(name in row, name, "nothing", "given in every row without a pressure")
+        pressure = row["force"] / row["area"]
+    pressure_error = of["pressure"] or np.hypot(of["force"], of["area"])
+    friction, friction_error = mu * pressure, pressure_error
+    if "friction" in row:
+        require("force" in row, "force", "nothing", "given with friction")
+        friction = pressure * row["friction"] / row["force"]
+        # Force over area times friction over force: the force is in neither.
+        friction_error = np.hypot(of["friction"], of["area"]) if not of["pressure"] else np.hypot.reduce(
+            [of["friction"], of["force"], of["pressure"]])
+    hardness, hardness_error = _hardness(row, of, brinell)
+    return {"pressure": pressure, "friction_stress": friction, "distance": row["distance"], "depth": row["depth"],
+            "hardness": hardness, "rate_error": np.hypot(of["depth"], of["distance"]), "pressure_error": pressure_error,
+            "friction_error": friction_error, "hardness_error": hardness_error}
+
+
+def _relative_error(row, name):
+    """Stated standard error of a quantity of the row over its value, 0 where none is stated."""
+    error = row.get(f"{name} error", 0.0)
+    require(name in row or not error, f"{name} error", error, f"given with {name}", SI[name])
+    return error / positive(name, row[name], SI[name]) if name in row else 0.0
+
+
+def _hardness(row, errors, brinell):
+    """(hardness in Pa, its relative standard error)."""
+    if "hardness" in row:
+        return row["hardness"], errors["hardness"]
+    steel, kelvin = row.get("steel", ""), row.get("temperature")
+    require(steel in STEELS, "steel", steel, f"one of {', '.join(STEELS)}, or hardness given")
+    require(kelvin is not None, "temperature", "nothing", "given in every row without a hardness")
+    table = STEELS[steel]
+    low, high = table.limits
+    require(low <= kelvin <= high, "temperature", kelvin, f"inside the table of {steel}, {low:g} to {high:g}", "K")
+    error = row.get("temperature error", 0.0)
+    ends = table(np.clip([kelvin - error, kelvin + error], low, high))
+    value = table(kelvin) * brinell / BRINELL
+    return value, abs(ends[1] - ends[0]) / 2 / table(kelvin)
+
+
+def fit(rows, *, law="pressure", mu=0.3, exponent=1.0, modes="", brinell=BRINELL):
+    """Fit the law to each steel's rows. -> {steel: {"tests", "error", "law", "fit", "rows": [(k, error)], "exponent"}}.
+
+    exponent: of the power law; None fits it as well. Rows alone are fitted one by one unless the law has several modes.
+    """
+    found = {}
+    for steel in dict.fromkeys(row.get("steel", "") for row in rows):
+        own = [row for row in rows if row.get("steel", "") == steel]
+        tests = tests_of(own, mu=mu, brinell=brinell)
+        start = wear_law(law, k=1.0, mu=mu, exponent=exponent or 1.0, modes=modes)
+        if law == "power" and exponent is None:
+            fitted, result, n = start.fit_exponent(tests)
+        else:
+            (fitted, result), n = start.fit(tests), None
+        single = []
+        if not isinstance(fitted, SumOfModes):
+            alone = PowerLaw(k=1.0, mu=mu, exponent=fitted.exponent) if law == "power" else start
+            for row in own:
+                _, one = alone.fit(tests_of([row], mu=mu, brinell=brinell))
+                single.append((float(one.k[0]), float(one.uncertainty[0])))
+        found[steel] = {"error": fitted.error_of(tests), "tests": tests, "law": fitted, "fit": result, "rows": single, "exponent": n}
+    return found
+
+
+def plus_minus(value, uncertainty):
+    """A value with its standard error."""
+    if not np.isfinite(uncertainty):
+        return f"{value:.5g} (no error known: give errors, or several rows)"
+    part = f" ({100 * uncertainty / value:.1f} %)" if value else ""
+    return f"{value:.5g} +- {uncertainty:.2g}{part}"
+
+
+def lines(found):
+    """What was found, line by line."""
+    for steel, one in found.items():
+        for number, (k, u) in enumerate(one["rows"], 1):
+            p, s, w = (one["tests"].pressure[number - 1] / 1e6, one["tests"].distance[number - 1],
+                       one["tests"].depth[number - 1] * 1e3)
+            yield f"{steel:6s} test {number}: {p:5.1f} MPa, {s:g} m, {w:g} mm    k = {plus_minus(k, u)}"
+        for number, (k, u) in enumerate(zip(one["fit"].k, one["fit"].uncertainty), 1):
+            mode = f" mode {number}" if len(one["fit"].k) > 1 else ""
+            yield f"{steel:6s} all tests{mode}: k = {plus_minus(k, u)}"
+        if one["exponent"]:
+            yield f"{steel:6s} exponent n = {plus_minus(*one['exponent'])}"
+        errors = one["error"]
+        if np.any(errors > 0) and not np.all(errors > 0):
+            yield f"{steel:6s} some tests state no error: all count alike, and the error of k is their scatter"
+        if one["fit"].misfit > 4:
+            yield (f"{steel:6s} the tests differ by {one['fit'].misfit**0.5:.1f} times their stated errors: "
+                   "k is not one number here, or the errors are larger")
+
+
+def draw(found, file):
+    """Worn depth over sliding distance against p / H, tests with their errors, and the law's line or points."""
+    from matplotlib.figure import Figure
+    figure = Figure(figsize=(6.5, 4.5), layout="constrained")
+    axes = figure.subplots()
+    for number, (steel, one) in enumerate(found.items()):
+        tests, colour = one["tests"], f"C{number}"
+        x, rate = 1e3 * tests.pressure / tests.hardness, 1e6 * tests.depth / tests.distance
+        axes.errorbar(x, rate, yerr=rate * tests.rate_error,
+                      xerr=x * np.hypot(tests.pressure_error, tests.hardness_error), fmt="o", color=colour, capsize=3, zorder=3)
+        if isinstance(one["law"], SumOfModes):
+            words = ", ".join(f"{k:.3g}" for k in one["fit"].k)
+            axes.plot(x, 1e6 * one["fit"].depth / tests.distance, "x", color=colour,
+                      label=f"{steel or 'tests'}: k = {words}")
+            continue
+        grid = np.linspace(0, 1.15 * x.max(), 100)
+        law = one["law"]
+        axes.plot(grid, 1e6 * law.k * (1e-3 * grid)**law.exponent, color=colour,
+                  label=f"{steel or 'tests'}: k = {plus_minus(law.k, one['fit'].uncertainty[0])}")
+    axes.set(xlabel="pressure / hardness, 1e-3", ylabel="worn depth / distance, µm/m", xlim=(0, None), ylim=(0, None))
+    axes.legend(frameon=False)
+    figure.savefig(file, dpi=110)
+
+
+def main(words=None):
+    """Command line. -> exit code: 0, or 2 for input that cannot be used, said in one line."""
+    parser = argparse.ArgumentParser(prog="python3 -m calibration.fitting.wear_fit", description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("file", nargs="?", default=str(EXAMPLE), help="CSV file; M's four rows when left out")
+    parser.add_argument("--law", default="pressure", choices=LAWS)
+    parser.add_argument("--mu", default="0.3", help="friction coefficient, where friction was not measured")
+    parser.add_argument("--exponent", default="1", help="n of the power law, or fit")
+    parser.add_argument("--modes", default="", help="of several modes: k/exponent/share, ... (k is what is fitted)")
+    parser.add_argument("--brinell", default=str(BRINELL), help="Pa a HB")
+    parser.add_argument("--out", default="", help="folder for wear_fit.json and wear_fit.png")
+    given = parser.parse_args(words)
+    try:
+        brinell, mu = positive("brinell", given.brinell, "Pa"), positive("mu", given.mu)
+        exponent = None if given.exponent == "fit" else positive("exponent", given.exponent)
+        found = fit(read(given.file, brinell), law=given.law, mu=mu, exponent=exponent, modes=given.modes,
+                    brinell=brinell)
+        if given.out:
+            _write(Path(given.out), found, given.law)
+    except ParameterError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 2
+    print("\n".join(lines(found)))
+    return 0
+
+
+def _write(folder, found, law):
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        text = json.dumps({"law": law, "steels": {steel: {
+            "k": one["fit"].k.tolist(), "uncertainty": _plain(one["fit"].uncertainty), "exponent": one["exponent"],
+            "k_of_each_test": [k for k, _ in one["rows"]],
+            "uncertainty_of_each_test": _plain(u for _, u in one["rows"])}
+            for steel, one in found.items()}}, indent=1)
+        (folder / "wear_fit.json").write_text(text, encoding="utf-8")
+        draw(found, folder / "wear_fit.png")
+    except OSError as error:
+        raise ParameterError("out", str(folder), f"a folder that can be written ({error.strerror})") from None
+
+
+def _plain(values):
+    """Numbers for JSON, null for what is not known."""
+    return [float(value) if np.isfinite(value) else None for value in values]
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,1 @@
+"""The virtual laboratory: tests of specimens."""

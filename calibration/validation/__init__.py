@@ -1,0 +1,1 @@
+"""Long validations: python3 -m calibration.validation FOLDER."""

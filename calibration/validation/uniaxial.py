@@ -1,0 +1,95 @@
+"""Sections of make validate about the virtual laboratory: M's three laws, P's sandstone, slow enough loading."""
+from statistics import mean
+
+from calibration.campaigns import uniaxial_figures as figures
+from calibration.campaigns.uniaxial import MAIN, SANDSTONE, SCRIPT, SMALL, SOFTENING, TESTS, folder_of
+from calibration.validation.verdicts import Row, Section
+
+SEEDS = 1, 2, 3
+SOFT = {case: {**MAIN, **SOFTENING}[case] for case in ("damage 2e11", "damage 5e9", "damage 2e9", "plastic 2e10",
+                                                        "plastic 2e9")}
+SLOW = 0.025
+FAST_ENOUGH = 0.02
+"""Part by which strength and E at the default speed may be off."""
+
+
+def uniaxial(**values):
+    """A run without a page of its own."""
+    return SCRIPT, dict(values, report="false", snapshot_period=1)
+
+
+def balances(name, run):
+    """Rows that every laboratory run must meet."""
+    balance = run.summary["balances"]["energy"]
+    return [Row(f"{name}: the specimen failed", 1, run.result("failed"), 0),
+            Row(f"{name}: energy explained, of the platens' work", 1.0, 1 - balance["residual"] / balance["platen_work"],
+                0.02)]
+
+
+def laws(runs):
+    """M 5.1: the three laws side by side, and what H does."""
+    main = {(case, test): runs[folder_of(case, test, 1)] for case in MAIN for test in TESTS}
+    rows = [row for (case, test), run in main.items() for row in balances(f"{case}, {test}", run)]
+    strength = {key: run.result("peak_stress") for key, run in main.items()}
+    modulus = {key: run.result("youngs_modulus") for key, run in main.items()}
+    for case in MAIN:
+        rows.append(Row(f"{case}: E in tension over E in compression", 1.0,
+                        modulus[case, "tension"] / modulus[case, "compression"], 0.02))
+    for case in list(MAIN)[1:]:
+        rows.append(Row(f"{case}: UCS over that of the brittle law (M fig. 5.2: similar)", 1.0,
+                        strength[case, "compression"] / strength["brittle", "compression"], 0.1, source=True))
+
+    ucs = {case: mean(runs[f"small-{folder_of(case, 'compression', seed)}"].result("peak_stress") for seed in SEEDS)
+           for case in SOFT}
+    rows += [Row("damage: UCS at H = 5e9 over 2e11 (M: hardly sensitive)", 1.0, ucs["damage 5e9"] / ucs["damage 2e11"],
+                 0.1, source=True),
+             Row("damage: UCS at H = 2e9 over 2e11 differs clearly (M)", 1,
+                 abs(ucs["damage 2e9"] / ucs["damage 2e11"] - 1) > 0.1, 0, source=True),
+             Row("plastic: UCS rises with H from 2e9 to 2e10 (M)", 1, ucs["plastic 2e10"] > 1.1 * ucs["plastic 2e9"], 0,
+                 source=True)]
+    curves = {test: {case: [main[case, test]] for case in MAIN} for test in TESTS}
+    return rows, {"laws_stress_strain": figures.stress_strain(curves),
+                  "laws_failure": figures.failures({case: main[case, "compression"] for case in MAIN})}
+
+
+def sandstone(runs):
+    """P 5.2: what its micro-parameters give, against what it says of its rock."""
+    def found(test, quantity):
+        return mean(runs[f"P-{folder_of('P', test, seed)}"].result(quantity) for seed in SEEDS)
+
+    rows = [row for name, run in runs.items() for row in balances(name, run)]
+    return rows + [
+        Row("Young's modulus", 18, 1e-9 * found("compression", "youngs_modulus"), 1.8, "GPa", source=True),
+        Row("Poisson's ratio", 0.18, found("compression", "poissons_ratio"), 0.02, source=True),
+        Row("compressive strength", 60, 1e-6 * found("compression", "peak_stress"), 6, "MPa", source=True),
+        Row("tensile strength", 7, 1e-6 * found("tension", "peak_stress"), 0.7, "MPa", source=True)], {}
+
+
+def slow_enough(runs):
+    """The default speed against a quarter of it, mean of the packings."""
+    rows = []
+    for rock in ("M", "P"):
+        for test in TESTS:
+            for quantity, name in (("peak_stress", "strength"), ("youngs_modulus", "E")):
+                default, slow = (mean(runs[f"{rock}-{test}-{seed}-{speed}"].result(quantity) for seed in SEEDS)
+                                 for speed in ("default", "slow"))
+                rows.append(Row(f"{rock}'s bonds, {test}: {name} over that at a quarter of the speed", 1.0,
+                                default / slow, FAST_ENOUGH))
+    return rows, {}
+
+
+SECTIONS = [
+    Section("Laboratory: the laws of M 5.1", "The three laws; H on 525 discs of three packings.", laws,
+            {**{folder_of(case, test, 1): uniaxial(test=test, **values) for case, values in MAIN.items()
+                      for test in TESTS},
+                   **{f"small-{folder_of(case, 'compression', seed)}": uniaxial(seed=seed, **SMALL, **values)
+                      for seed in SEEDS for case, values in SOFT.items()}}),
+    Section("Laboratory: the sandstone of P 5.2", "P's micro-parameters, mean of three packings; calibration/results/"
+            "uniaxial.md says where the differences come from.", sandstone,
+            {f"P-{folder_of('P', test, seed)}": uniaxial(test=test, seed=seed, **SANDSTONE)
+             for seed in SEEDS for test in TESTS}),
+    Section("Laboratory: slow enough", f"525 discs at the default speed and at {SLOW:g} m/s.", slow_enough,
+            {f"{rock}-{test}-{seed}-{name}": uniaxial(test=test, seed=seed, **SMALL, **values, **speed)
+             for rock, values in (("M", {}), ("P", SANDSTONE)) for test in TESTS for seed in SEEDS
+             for name, speed in (("default", {}), ("slow", {"speed": SLOW}))}),
+]

@@ -1,0 +1,61 @@
+"""Validation of wear: the laboratory test of M 6.6 returns what it was given, for M's rows and rising temperatures, and a
+tool of segments wears like one of particles."""
+import math
+import statistics
+
+from calibration.campaigns import two_tools
+from calibration.validation.verdicts import Row, Section
+from rockwear.report.plots import MM, canvas
+
+SCRIPT = "yade_scripts/sliding_wear.py"
+ROWS = {"lab_MET71_34MPa": dict(hardness_table="MET71", wear_coefficient=0.0023, force=885, area=26e-6, temperature=429.15),
+        "lab_MET71_28MPa": dict(hardness_table="MET71", wear_coefficient=0.0028, force=840, area=30e-6, temperature=419.15),
+        "lab_MET91_9.1MPa": dict(hardness_table="MET91", wear_coefficient=0.0113, force=622, area=68e-6, temperature=401.15),
+        "lab_MET91_9.0MPa": dict(hardness_table="MET91", wear_coefficient=0.01125, force=1237, area=138e-6, temperature=486.15)}
+"""M 6.12-6.15, tables 6.2 and 6.3."""
+RISING = {f"{name}_heating_by_350K": {**ROWS[name], "temperature_rise": 350}
+          for name in ("lab_MET71_34MPa", "lab_MET91_9.0MPa")}
+
+
+def laboratory(runs):
+    """k returned over k given, by the depth the block has lost and the known force, and where Archard's volume is."""
+    rows = []
+    figure, (axes,) = canvas(7, 4.5)
+    for (name, run), allowed in zip(runs.items(), [1e-3] * len(ROWS) + [5e-3] * len(RISING)):
+        mass, words = run.summary["balances"]["mass"], name.replace("_", " ")
+        returned = run.result("k_returned") / run.result("k_given")
+        rows += [Row(f"{words}: k returned over k given", 1.0, returned, allowed),
+                 Row(f"{words}: Archard's volume found again", 1.0, 1 + mass["unexplained"] / mass["archard"], 1e-9)]
+        line, = axes.plot(run.column("distance"), MM * run.column("worn_depth"), linewidth=1.2, label=words)
+        axes.plot(run.column("distance"), MM * run.column("expected_depth"), color=line.get_color(), linewidth=4,
+                  alpha=0.3)
+    axes.set(xlabel="distance / m", ylabel="worn depth / mm", xlim=(0, None), ylim=(0, None))
+    axes.legend(fontsize=8)
+    return rows, {"laboratory_wear": figure}
+
+
+SEEDS = (1, 2, 3)
+TOOLS = {"particles": {"removal": "none"}, "segments": {"reshape": "false"}}
+SAME_CUT = dict(start_up=0.003, cycles=0, grading_factor=3, heat="false")
+
+
+def both_tools(runs):
+    """Worn volume and friction of the two tools, whose means may differ by the scatter of their packings."""
+    groups, rows = two_tools.grouped(runs.values()), []
+    for quantity, unit, of in (("worn volume, unaccelerated", "um2", lambda run: 1e12 * two_tools.worn_once(run)),
+                               ("friction, % of the tool's work", "", lambda run: 100 * two_tools.share_of_friction(run))):
+        particles, segments = ([of(run) for run in found] for found in groups.values())
+        rows.append(Row(f"{quantity}: segments against particles", statistics.mean(particles), statistics.mean(segments),
+                        math.hypot(statistics.stdev(particles), statistics.stdev(segments)), unit))
+    return rows, {"two_tools": two_tools.figure(groups)}
+
+
+SECTIONS = [
+    Section("Laboratory wear test", "A block under a known load slides and wears (M 6.6). Thin: simulated; broad: the "
+            "law under the known force, integrated over the temperature on the way.", laboratory,
+            {name: (SCRIPT, {**values, "report": "false"}) for name, values in {**ROWS, **RISING}.items()}),
+    Section("Particles or segments", "The same tooth in the same three packings, its shape kept, as particles and as "
+            "segments; allowed is the scatter of single packings, both tools' together.", both_tools,
+            {f"{tool}_{seed}": ("yade_scripts/tooth_cycles.py", {"tool": tool, "seed": seed, **SAME_CUT, **kept})
+             for tool, kept in TOOLS.items() for seed in SEEDS}),
+]

@@ -1,0 +1,27 @@
+"""The guard over a run's energy."""
+import math
+
+from yade import O, utils
+
+from rockwear.engines.base import Engine, RunEnded
+
+
+class EnergyGuard(Engine):
+    """Ends a run whose energy runs away: kinetic energy far above all the work put in, or not a number.
+
+    work: a function giving the work done on the rock so far (J); floor: J below which nothing is judged.
+    """
+
+    name = "energy_guard"
+    runaway = 10.0
+
+    def __init__(self, *, work, floor):
+        super().__init__()
+        self.work, self.floor = work, floor
+
+    def act(self):
+        kinetic = utils.kineticEnergy()
+        allowed = self.runaway * max(self.work(), self.floor)
+        if not math.isfinite(kinetic) or kinetic > allowed:
+            raise RunEnded(f"the simulation blew up at t = {O.time:g} s: kinetic energy {kinetic:g} J is not below "
+                           f"{allowed:g} J, {self.runaway:g} times the work done; try a smaller time_step_fraction", False)

@@ -1,0 +1,113 @@
+"""Wear of a tool of facets: it moves the vertices."""
+import math
+import numpy as np
+
+from yade import O
+
+from rockwear.engines.base import RunEnded
+from rockwear.engines.facet_contact import SLIP
+from rockwear.engines.wear import WearEngine
+from rockwear.kernels.boundary import altitudes, area_vectors
+from rockwear.kernels.remeshing import CROWDED
+from rockwear.kernels.worn_boundary import Folded, STEPS, STRIDE, WornAway
+
+
+class FacetWear(WearEngine):
+    """Wear of a tool of facets: what its contacts wear off each facet becomes a motion of the vertices (R 2.5).
+
+    boundary: kernels.worn_boundary.WornBoundary; tool: its bodies; hardness: Pa; work_fraction: the part of the friction
+    work that counts as the tool's (R 2-53 takes one half, Archard's law all of it); reshape: False leaves the shape as it
+    is, and only `worn` grows; acceleration: the law's, for what is said of it. `limit` is a layer of a facet as deep as
+    the new facet's smallest altitude: what a particle of that size would be.
+
+    `recession` is the mean over the worn volume of what a facet recedes over the way slid on it, dw/ds of Archard's law.
+    Where it is not small, a face recedes from what presses on it: the contact is relieved, and wear is no longer
+    proportional to the acceleration, R's first rule. A facet given to another part of the surface by remeshing counts for
+    the place it lies on then. Raises RunEnded where a facet would recede further in one update than vertices can go,
+    where the boundary would fold, and where a particle has come to the inner side of a facet.
+    """
+
+    def __init__(self, *, contact, boundary, tool, law, hardness, work_fraction=1.0, reshape=True, wear_acceleration=1.0,
+                 **common):
+        super().__init__(contact=contact, law=law, count=len(boundary.facets), **common)
+        self.boundary, self.tool, self.hardness = boundary, tool, hardness
+        self.work_fraction, self.reshape, self.wear_acceleration = work_fraction, reshape, wear_acceleration
+        self.worn = np.zeros(len(boundary.facets))
+        self.receded = 0.0
+        self.limit = self._areas() * altitudes(boundary.vertices, boundary.facets)
+
+    def _areas(self):
+        return np.linalg.norm(area_vectors(self.boundary.vertices, self.boundary.facets), axis=1)
+
+    def act(self):
+        slid = self.take_slid()
+        if self.reshape:
+            self._check_sides()
+        if slid is None:
+            return
+        areas = self._areas()
+        volume = self.work_fraction * self.law.volume(slid, self.hardness, areas)
+        self.worn += self.at_places(volume)
+        if not self.reshape:
+            return
+        rubbed = slid[SLIP] > 0
+        self.receded += float(np.sum(volume[rubbed]**2 / (areas * slid[SLIP])[rubbed]))
+        self._check_speed(volume / areas)
+        stored, remeshed = self.contact.elastic_energy(), self.boundary.remeshed
+        try:
+            moved = self.boundary.wear(volume)
+        except WornAway as end:
+            raise RunEnded(f"the tool is worn away at t = {O.time:g} s: {end}", True) from None
+        except Folded as end:
+            raise RunEnded(f"the tool's shape cannot follow its wear at t = {O.time:g} s: {end}", False) from None
+        if moved:
+            if self.boundary.remeshed != remeshed:
+                self.contact.neighbours = self.boundary.neighbours()
+            self.contact.shape_has_changed()
+            self.tool.reshape()
+            self.contact_energy_removed += stored - self.contact.elastic_energy()
+
+    def at_places(self, values):
+        return np.bincount(self.boundary.place, values, len(self.worn))
+
+    def _check_speed(self, depth):
+        # What falls on a facet that has crowded, those around it take over.
+        now = altitudes(self.boundary.vertices, self.boundary.facets)
+        size = np.maximum(now, CROWDED * self.boundary.size)
+        depth = depth * now / size
+        worst = int(np.argmax(depth / size))
+        if depth[worst] > STEPS * STRIDE * size[worst]:
+            raise self._too_fast(f"a facet of {1e3 * size[worst]:.3g} mm would recede by {1e3 * depth[worst]:.3g} mm at once")
+
+    def _check_sides(self):
+        place = self.contact.from_behind()
+        if place is not None:
+            raise self._too_fast(f"a rock particle has come to lie inside of it at {place}")
+
+    def _too_fast(self, words):
+        return RunEnded(f"the tool's shape cannot follow its wear at t = {O.time:g} s: {words}; lower acceleration = "
+                        f"{self.wear_acceleration:g}", False)
+
+    @property
+    def recession(self):
+        """-, mean of dw/ds; nan without wear."""
+        return self.receded / self.volume if self.volume > 0 else math.nan
+
+    @property
+    def volume(self):
+        """m3 that the wear law has worn so far."""
+        return float(self.worn.sum())
+
+    def state(self):
+        return {**super().state(), "receded": self.receded, "worn": self.worn.copy(), "boundary": self.boundary.state()}
+
+    def restore(self, state):
+        super().restore(state)
+        self.receded = float(state["receded"])
+        self.worn = state["worn"].copy()
+        self.boundary.restore(state["boundary"])
+        self.contact.neighbours = self.boundary.neighbours()
+
+    def log(self):
+        return {"mass_lost": (1 - self.boundary.volume / self.boundary.first_volume, "-"),
+                "worn_volume": (self.volume, self.volume_unit)}

@@ -1,0 +1,28 @@
+"""The end of a strength test."""
+from rockwear.engines.base import Engine, RunEnded
+
+
+class Failure(Engine):
+    """Ends the run when, with bonds broken, the stress has fallen to a part `drop` of its peak.
+
+    stress: a function giving it (Pa); broken: a function telling whether any bond is broken.
+    """
+
+    name = "failure"
+
+    def __init__(self, *, stress, broken, drop):
+        super().__init__()
+        self.stress, self.broken, self.drop = stress, broken, drop
+        self.peak = 0.0
+
+    def act(self):
+        stress = self.stress()
+        self.peak = max(self.peak, stress)
+        if stress < self.drop * self.peak and self.broken():
+            raise RunEnded(f"failed at {self.peak / 1e6:.4g} MPa", True)
+
+    def state(self):
+        return {"peak": self.peak}
+
+    def restore(self, state):
+        self.peak = float(state["peak"])

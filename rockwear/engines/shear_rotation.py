@@ -1,0 +1,61 @@
+"""Bonds that turn fast: their shear springs turn with them."""
+import numpy as np
+from yade import O, Subdomain, Vector3
+
+from rockwear.kernels.shear_rotation import shear_to_start_from, turning_rates
+from rockwear.engines.base import Engine
+from rockwear.engines.bonds import INTACT
+
+FAST = 0.01
+"""Angle (rad) a step from which a bond counts as turning fast. In steps of 30 us slower chips gain energy at less than
+0.2 of it a second; the default background damping takes 40 a second."""
+LOOKING_PERIOD = 100
+"""Steps between looks for such bonds."""
+
+
+class Turning(Engine):
+    """Corrects YADE's shear rule where bonds turn fast (kernels.turning): chips that angular_velocity would gain energy.
+
+    bonds: engines.bonds.Bonds, in space and with shear that follows the points of contact; radii: (n,) m of the bodies
+    0..n-1. To be visited at the beginning of a step: what it writes is what YADE's law starts from.
+    """
+
+    name = "shear_rotation"
+
+    def __init__(self, *, bonds, radii):
+        super().__init__()
+        self.bonds, self.radii = bonds, radii
+        self.fast = np.zeros(0, int)
+
+    def act(self):
+        if O.iter % LOOKING_PERIOD == 0:
+            self._look()
+        fast = self.fast[self.bonds.status[self.fast] == INTACT]
+        if not len(fast):
+            return
+        contacts = [self.bonds.contact(n) for n in fast.tolist()]
+        shear = np.array([phys.shearForce for phys in contacts])
+        stiffness = np.array([phys.ks for phys in contacts])
+        ends = self.bonds.ends[fast].T
+        line, velocity, spins = self._motion(ends)
+        found = shear_to_start_from(shear, line, velocity, spins, self.radii[ends], stiffness, O.dt)
+        for phys, force in zip(contacts, found.tolist()):
+            phys.shearForce = Vector3(*force)
+
+    def _look(self):
+        intact = np.flatnonzero(self.bonds.status == INTACT)
+        rates = turning_rates(*self._motion(self.bonds.ends[intact].T))
+        self.fast = intact[rates * O.dt > FAST]
+
+    def _motion(self, ends):
+        """Of the contacts of bodies `ends` (2, n): line (n, 3) m, velocity (n, 3) m/s, spins (2, n, 3) rad/s."""
+        bodies, places = np.unique(ends, return_inverse=True)
+        states = np.reshape(Subdomain().getStateValuesFromIds(bodies.tolist()), (-1, 13))[places.reshape(ends.shape)]
+        gap = states[1] - states[0]
+        return gap[:, :3], gap[:, 3:6], states[:, :, 6:9]
+
+    def state(self):
+        return {"fast": self.fast.copy()}
+
+    def restore(self, state):
+        self.fast = state["fast"].copy()

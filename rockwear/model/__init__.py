@@ -1,0 +1,1 @@
+"""What is simulated, without YADE: rock, tools, materials."""

@@ -1,0 +1,131 @@
+"""The tool as a closed boundary of facets: segments from an outline, triangles from an STL file or a drawn-out outline."""
+import warnings
+
+import numpy as np
+
+from rockwear.kernels.boundary import area_vectors, check_boundary, distance, refine, segments
+from rockwear.kernels.checks import ParameterError, positive, require
+from rockwear.kernels.polygon import perimeter
+from rockwear.kernels.worn_boundary import WornBoundary
+
+
+MOST_FACETS = 20_000
+"""A tool may have: by then an update of its wear takes seconds."""
+
+
+def check_size(name, size, least):
+    """Raise ParameterError (name) for facets of a size (m) less than `least`, of which the tool would have too many."""
+    require(size >= least, name, size, f"at least {least:.3g}: the tool would have more than {MOST_FACETS} facets", "m")
+
+
+class FacetTool:
+    """A rigid tool whose facets are worn. vertices (n, d) m, facets (m, d), density kg/m3, d = 2 or 3.
+
+    It moves in +x, y is up (and z across, in space). The facets of its top and of its back are held by the shank:
+    they are never worn and stay in their planes, unless `fixed` (m,) bool says others.
+    """
+
+    def __init__(self, *, vertices, facets, density, fixed=None):
+        vertices, facets = check_boundary(vertices, facets, "tool")
+        self.first, self.first_facets = vertices, facets
+        self.density = positive("tool_density", density, "kg/m3")
+        if fixed is None:
+            slack = 1e-6 * np.ptp(vertices[:, :2], axis=0).max()
+            top, back = vertices[:, 1] > vertices[:, 1].max() - slack, vertices[:, 0] < vertices[:, 0].min() + slack
+            fixed = top[facets].all(axis=1) | back[facets].all(axis=1)
+        self.boundary = WornBoundary(vertices=vertices, facets=facets, fixed=fixed)
+        self.count = len(facets)
+
+    @classmethod
+    def of_outline(cls, polygon, *, segment, density):
+        """Segments of at most `segment` m along a polygon (k, 2), longer ones cut in halves."""
+        check_size("segment", segment, perimeter(polygon) / MOST_FACETS)
+        vertices, facets = refine(*segments(polygon), positive("segment", segment, "m"))
+        return cls(vertices=vertices, facets=facets, density=density)
+
+    @property
+    def area(self):
+        """m2 of the new outline; in space the volume, m3."""
+        return self.boundary.first_volume
+
+    @property
+    def positions(self):
+        """(m, d) m, the middles of the facets as they were made."""
+        return self.first[self.first_facets].mean(axis=1)
+
+    @property
+    def areas(self):
+        """(m,) m2 of the facets as they were made; in the plane lengths, m."""
+        return np.linalg.norm(area_vectors(self.first, self.first_facets), axis=1)
+
+    @property
+    def worn_depth(self):
+        """(n,) m by which the surface has gone back from each of its first vertices: from there to what is nearest of it.
+
+        On a face that is the recession along its normal; at an edge that has become another, the way to the nearest of
+        it. It depends on the two shapes alone, whatever vertices and facets they are made of.
+        """
+        return distance(self.first, self.boundary.vertices, self.boundary.facets)
+
+    @property
+    def depth_below(self):
+        """(n,) m from each vertex as it is now to the surface as it was made."""
+        return distance(self.boundary.vertices, self.first, self.first_facets)
+
+    def foremost(self, below):
+        """Largest x that vertices have below the height `below` (both m, in the tool's own frame), -inf for none."""
+        vertices = self.boundary.vertices
+        return float(vertices[vertices[:, 1] < below, 0].max(initial=-np.inf))
+
+
+def corners(vertices, facets):
+    """(m, 3, 3) m, corners of the triangles that stand for the facets in YADE.
+
+    A segment P-Q becomes one isosceles triangle with its base across the plane at P and its apex at Q: its section with
+    the plane is the segment, and the point nearest to any disc's centre lies in the plane.
+    """
+    if vertices.shape[1] == 3:
+        return vertices[facets]
+    begin, end = (np.column_stack([vertices[facets[:, k]], np.zeros(len(facets))]) for k in (0, 1))
+    half = np.linalg.norm(end - begin, axis=1, keepdims=True) / np.sqrt(3) * [0, 0, 1]
+    return np.stack([begin - half, begin + half, end], axis=1)
+
+
+def incentres(triangles):
+    """(m, 3) m, centres of the inscribed circles, which YADE takes for the centres of its facets."""
+    opposite = np.linalg.norm(np.roll(triangles, -1, axis=1) - np.roll(triangles, -2, axis=1), axis=2)
+    return np.einsum("mk,mkd->md", opposite, triangles) / opposite.sum(axis=1)[:, None]
+
+
+def read_stl(path, *, scale=1.0):
+    """(vertices (n, 3) m, facets (m, 3)) of an STL file, binary or text, its numbers times `scale`; equal corners are one.
+
+    Raises ParameterError (stl) for a file that cannot be read, or a surface that is open, flipped, folded or inside out.
+    """
+    positive("scale", scale)
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            from stl.mesh import Mesh
+            triangles = np.array(Mesh.from_file(str(path), calculate_normals=False).vectors, float)
+    except ImportError:
+        raise ParameterError("stl", str(path), "readable: the Debian package python3-stl is missing") from None
+    except (OSError, RuntimeError, ValueError, TypeError, AssertionError) as error:
+        raise ParameterError("stl", str(path), f"a readable STL file ({str(error).splitlines()[0]})") from None
+    if not len(triangles) or not np.isfinite(triangles).all():
+        raise ParameterError("stl", str(path), "a file of triangles with finite corners")
+    points, number = np.unique(triangles.reshape(-1, 3), axis=0, return_inverse=True)
+    try:
+        return check_boundary(points * scale, number.reshape(-1, 3))
+    except ParameterError as error:
+        raise ParameterError("stl", f"{path}, {error.value}", error.rule, error.unit) from None
+
+
+def write_stl(path, vertices, facets):
+    """Write triangles (m, 3) of vertices (n, 3) as a binary STL file; its numbers have single precision."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        from stl.mesh import Mesh
+    mesh = Mesh(np.zeros(len(facets), dtype=Mesh.dtype))
+    mesh.vectors[:] = np.asarray(vertices)[facets]
+    mesh.save(str(path))

@@ -1,0 +1,1 @@
+"""A run: parameters in, one folder out."""

@@ -1,0 +1,273 @@
+"""A run: parameters in, one folder out, nothing lost on the way."""
+import json
+import math
+import os
+import platform
+import resource
+import shutil
+import signal
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import yade
+
+from rockwear import __version__, report
+from rockwear.run import parameters
+from rockwear.run import checkpoint
+from rockwear.engines.base import RunEnded
+from rockwear.engines.recorder import write_table
+from rockwear.kernels.checks import ParameterError, require
+from rockwear.kernels.parameter import Parameter, above_zero, file, flag, text
+
+COMMON = [
+    Parameter("out", "", "", text, "folder of the results; out/SCENE when empty, a subfolder a row in a batch"),
+    Parameter("resume", False, "", flag, "go on from the checkpoint in the folder"),
+    Parameter("checkpoint_interval", 60.0, "s", above_zero, "wall time between checkpoints"),
+    Parameter("snapshot_period", 4e-4, "s", above_zero, "simulated time between the pictures of the report"),
+    Parameter("report", True, "", flag, "write report.html and its figures at the end"),
+    Parameter("vtk", False, "", flag, "write each snapshot for ParaView too"),
+]
+OURS = "snapshots", "checkpoint", "figures", "vtk"
+"""Folders that a new run empties."""
+MOST_STEPS = 1e10
+"""In all: more than a month of computing."""
+NOT_IDENTITY = {"out", "resume", "checkpoint_interval", "report", "vtk"}
+
+
+def main(name, declared, make_scene):
+    """Run the scene `name` with the declared parameters; make_scene(values) -> scene. Ends the process.
+
+    Exit code 0: done; 2: a parameter, a folder or a checkpoint that cannot be used, said in one line before the first
+    step; 1: the run ended badly, said in one line, the last checkpoint kept; 128 + n: stopped by signal n, resumable.
+    """
+    names = {parameter.name for parameter in declared}
+    declared = [*declared, *(parameter for parameter in COMMON if parameter.name not in names)]
+    if "--help" in sys.argv:
+        print(f"yade -n -x {sys.argv[0]} [--name value ...]")
+        parameters.describe(declared)
+        _leave(0)
+    began = time.time()
+    try:
+        values = parameters.read(declared, sys.argv[1:])
+        folder, identity = _folder(name, values, declared), _identity(name, values, declared)
+        if values["resume"]:
+            checkpoint.load(folder / "checkpoint", identity)
+        scene = make_scene(values)
+        run = Run(name, scene, values, folder, identity, began)
+        run.prepare()
+    except ParameterError as error:
+        print(f"error: {error}", file=sys.stderr)
+        _leave(2)
+    _leave(run.go())
+
+
+def _leave(code):
+    sys.stdout.flush()
+    sys.stderr.flush()
+    # YADE's threads make an ordinary exit crash now and then after all work is done.
+    os._exit(code)
+
+
+def _files(values, declared):
+    """{parameter: Path} of the files that are read."""
+    files = {p.name: Path(values[p.name]) for p in declared if p.rule is file and values[p.name]}
+    return {name: path for name, path in files.items() if path.is_file()}
+
+
+def _identity(name, values, declared):
+    """What a run must share with the checkpoint that it goes on from: the contents of its files too."""
+    return {"scene": name, "yade": yade.config.version, "rockwear": __version__,
+            "parameters": {k: v for k, v in values.items() if k not in NOT_IDENTITY},
+            "files": {name: checkpoint.digest(path) for name, path in _files(values, declared).items()}}
+
+
+def _folder(name, values, declared):
+    row = parameters.batch_row()
+    folder = Path(values["out"] or Path("out") / name)
+    if row is not None:
+        folder = folder / row
+    existing = folder
+    try:
+        while not existing.exists():
+            existing = existing.parent
+        writable = existing.is_dir() and os.access(existing, os.W_OK)
+    except OSError as error:
+        raise ParameterError("out", str(folder), f"a folder that can be written ({error.strerror})") from None
+    if not writable:
+        raise ParameterError("out", str(folder), "a folder that can be written")
+    for key, path in _files(values, declared).items():
+        require(folder.resolve() not in path.resolve().parents, key, str(path),
+                f"outside of {folder}, where this run replaces what is there")
+    # A run replaces an earlier one in its folder, but nothing that is not a run's.
+    foreign = [old for old in (*OURS, "report.html") if (folder / old).exists()]
+    if foreign and not (folder / "model.npz").exists():
+        raise ParameterError("out", str(folder), f"a folder of runs: {', '.join(foreign)} there would be replaced")
+    return folder
+
+
+class Run:
+    """Leads a scene through its stages and keeps its folder."""
+
+    def __init__(self, name, scene, values, folder, identity, began):
+        self.name, self.scene, self.values, self.folder, self.began = name, scene, values, folder, began
+        self.identity = identity
+        self.stopped_by = None
+        self.snapshots = 0
+        self.next_snapshot = 0.0
+        self.wall_before = 0.0
+        self.setup_time = self.loop_time = self.checkpoint_time = 0.0
+
+    def prepare(self):
+        """Make the folder and the scene, fresh or from the checkpoint."""
+        steps = float(sum(steps for _, steps in self.scene.stages))
+        require(steps <= MOST_STEPS, "steps", steps, f"at most {MOST_STEPS:g} of {self.scene.time_step:g} s in all: shorten "
+                "the times of the scene")
+        if not self.values["resume"]:
+            self.scene.build()
+        try:
+            (self.folder / "snapshots").mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise ParameterError("out", str(self.folder), f"a folder that can be written ({error.strerror})") from None
+        if self.values["resume"]:
+            state, directory = checkpoint.load(self.folder / "checkpoint", self.identity)
+            self.scene.restore(state["scene"], directory, self.folder)
+            self.snapshots, self.next_snapshot = int(state["snapshots"]), float(state["next_snapshot"])
+            self.wall_before = float(state["wall_time"])
+        else:
+            for old in OURS:
+                shutil.rmtree(self.folder / old, ignore_errors=True)
+            for old in ("summary.json", "history.csv", "cracks.csv", "turns.csv", "wear_profile.csv", "tool.stl", "report.html"):
+                (self.folder / old).unlink(missing_ok=True)
+            (self.folder / "snapshots").mkdir()
+            np.savez_compressed(self.folder / "model.npz", **self.scene.model())
+        self.setup_time = time.time() - self.began
+
+    def go(self):
+        """Run to the end. -> exit code."""
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, self._on_signal)
+        ended, code = "finished", 0
+        try:
+            if not self.values["resume"]:
+                self._checkpoint()
+            self._loop()
+        except RunEnded as end:
+            ended, code = str(end), 0 if end.healthy else 1
+        except (OSError, RuntimeError, FloatingPointError, ParameterError) as error:
+            ended, code = f"{type(error).__name__}: {error}".splitlines()[0], 1
+        if self.stopped_by:
+            print(f"stopped by signal {self.stopped_by} at t = {self.scene.time:.6g} s; --resume goes on from here")
+            return 128 + self.stopped_by
+        return self._finish(ended, code)
+
+    def _finish(self, ended, code):
+        if code:
+            print(f"error: {ended} (the last checkpoint is kept in {self.folder / 'checkpoint'})", file=sys.stderr)
+        elif ended != "finished":
+            print(ended)
+        try:
+            if not code:
+                self._snapshot()
+                self._checkpoint()
+            warnings = self.scene.warnings()
+            self._write_summary(ended, code, warnings)
+            self.scene.write_shape(self.folder)
+            for line in warnings:
+                print(f"warning: {line}", file=sys.stderr)
+            if not code and self.values["report"]:
+                report.write(self.folder)
+                print(f"report: {self.folder / 'report.html'}")
+        except OSError as error:
+            print(f"error: {error}", file=sys.stderr)
+            return 1
+        return code
+
+    def _on_signal(self, number, frame):
+        self.stopped_by = number
+
+    def _loop(self):
+        last_checkpoint = last_word = time.time()
+        self.started, self.steps_here = time.time(), 0
+        while not self.scene.finished:
+            if self.scene.time >= self.next_snapshot - 0.5 * self.scene.time_step:
+                self._snapshot()
+            before = self.scene.step
+            begin = time.time()
+            try:
+                self.scene.run_chunk()
+            finally:
+                self.loop_time += time.time() - begin
+            self.steps_here += self.scene.step - before
+            if self.scene.stage_done:
+                self._snapshot()
+                self.scene.end_stage(self.folder)
+            now = time.time()
+            if self.stopped_by or now - last_checkpoint > self.values["checkpoint_interval"]:
+                self._checkpoint()
+                self.scene.recorder.write(self.folder / "history.csv")
+                last_checkpoint = time.time()
+            if self.stopped_by:
+                return
+            if now - last_word > (1 if sys.stdout.isatty() else 10):
+                self._say_progress()
+                last_word = now
+        self._say_progress()
+        if sys.stdout.isatty():
+            print()
+
+    def _say_progress(self):
+        scene = self.scene
+        done = sum(steps for _, steps in scene.stages[:scene.stage]) + (0 if scene.finished else scene.step)
+        total = sum(steps for _, steps in scene.stages)
+        left = (total - done) / max(self.steps_here, 1) * (time.time() - self.started)
+        name = "done" if scene.finished else scene.stages[scene.stage][0]
+        line = (f"{name:9s} {100 * done / total:5.1f} %  t = {1e3 * scene.time:.2f} ms  {scene.progress()}, "
+                f"{int(left) // 60} min {int(left) % 60:02d} s left")
+        print("\r" + line + "\033[K" if sys.stdout.isatty() else line, end="" if sys.stdout.isatty() else "\n", flush=True)
+
+    def _snapshot(self):
+        arrays = self.scene.snapshot()
+        np.savez_compressed(self.folder / "snapshots" / f"{self.snapshots:04d}.npz", **arrays)
+        if self.values["vtk"]:
+            self.scene.write_vtk(self.folder / "vtk", self.snapshots)
+        self.snapshots += 1
+        period = self.values["snapshot_period"]
+        self.next_snapshot = period * (math.floor(self.scene.time / period + 1e-9) + 1)
+
+    def _checkpoint(self):
+        begin = time.time()
+        state = {"scene": self.scene.state(), "snapshots": self.snapshots, "next_snapshot": self.next_snapshot,
+                 "wall_time": self.wall_before + time.time() - self.began}
+        checkpoint.save(self.folder / "checkpoint", identity=self.identity, state=state,
+                        write_scenes=lambda directory: self.scene.save(directory, self.folder))
+        self.checkpoint_time += time.time() - begin
+
+    def _write_summary(self, ended, code, warnings):
+        scene = self.scene
+        scene.recorder.write(self.folder / "history.csv")
+        for name, (header, rows) in scene.tables().items():
+            write_table(self.folder / name, header, rows)
+        ours = {engine.name: {"seconds": engine.wall_time, "visits": engine.visits} for engine in scene.live}
+        python = sum(engine.wall_time for engine in scene.live)
+        summary = {
+            "scene": self.name, "ended": ended, "exit_code": code, "warnings": warnings, "parameters": self.values,
+            "files": self.identity["files"], "seed": self.values.get("seed"),
+            "versions": {"rockwear": __version__, "yade": yade.config.version, "python": platform.python_version(),
+                         "numpy": np.__version__},
+            "results": {name: {"value": _plain(value), "unit": unit} for name, (value, unit) in scene.results().items()},
+            "balances": {name: {"unit": unit, **{key: _plain(value) for key, value in balance.items()}}
+                       for name, (balance, unit) in scene.balances().items()},
+            "wall_time": {"unit": "s", "total": self.wall_before + time.time() - self.began, "set_up": self.setup_time,
+                          "loop": self.loop_time, "python_engines": python, "yade": self.loop_time - python,
+                          "checkpoints": self.checkpoint_time, "by_engine": ours},
+            "peak_memory": {"value": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024, "unit": "bytes"},
+        }
+        temporary = self.folder / "summary.json.new"
+        temporary.write_text(json.dumps(summary, indent=1, allow_nan=True), encoding="utf-8")
+        os.replace(temporary, self.folder / "summary.json")
+
+
+def _plain(value):
+    return value.item() if isinstance(value, np.generic) else value

@@ -1,0 +1,124 @@
+"""Building blocks of scenes: what is put into YADE, and how."""
+import math
+
+from yade import (
+    Bo1_Facet_Aabb, Bo1_Sphere_Aabb, ForceResetter, FrictMat, FrictViscoMat, Ig2_Facet_Sphere_ScGeom,
+    Ig2_Sphere_Sphere_ScGeom, InsertionSortCollider, InteractionLoop, Ip2_FrictMat_FrictMat_FrictPhys,
+    Ip2_FrictMat_FrictViscoMat_FrictViscoPhys, Ip2_FrictViscoMat_FrictViscoMat_FrictViscoPhys,
+    Ip2_JCFpmMat_JCFpmMat_JCFpmPhys, JCFpmMat, Law2_ScGeom_FrictPhys_CundallStrack,
+    Law2_ScGeom_FrictViscoPhys_CundallStrackVisco, Law2_ScGeom_JCFpmPhys_JointedCohesiveFrictionalPM, MatchMaker,
+    NewtonIntegrator, O, log, utils)
+
+
+# It would call it a bug that its lists of bodies are off; see Scene._fresh_bounds.
+log.setLevel("BodyContainer", log.ERROR)
+
+ROCK_MASK, TOOL_MASK = 1, 3
+"""Bodies meet where masks share a bit; bit 2 is avoided within the tool."""
+
+
+def exactly(value):
+    """A constant of a contact, whatever the materials say."""
+    return MatchMaker(algo="val", val=value)
+
+
+def put_rock_materials(*, mu, loose=FrictMat):
+    """Rock while it is bonded, and rock afterwards.
+
+    Rock changes its material after bonding: a bond stays the bond it is, and every later contact is a plain Coulomb
+    contact. Stiffness is given by the contact laws, not by these. loose: FrictViscoMat beside a tool of facets.
+    """
+    O.materials.append(JCFpmMat(type=1, young=1e9, poisson=1.0, frictionAngle=0.0, density=1.0, tensileStrength=1.0,
+                                cohesion=1.0, label="bonding rock"))
+    O.materials.append(loose(young=1e9, poisson=0.3, frictionAngle=math.atan(mu), density=1.0, label="loose rock"))
+
+
+def put_tool_material(*, mu, contact_damping):
+    """The tool's material, its friction and dashpot."""
+    O.materials.append(FrictViscoMat(young=1e9, poisson=0.3, frictionAngle=math.atan(mu), density=1.0,
+                                     betan=contact_damping, label="steel"))
+
+
+def put_rock(rock):
+    """The specimen's particles as bodies 0..n-1, its fixed ones held."""
+    for position, radius, mass, inertia, fixed in zip(rock.positions.tolist(), rock.radii.tolist(), rock.masses.tolist(),
+                                                     rock.inertias.tolist(), rock.fixed):
+        particle = finite_disc if len(position) == 2 else sphere
+        body = particle(position, radius, material="bonding rock", mask=ROCK_MASK, mass=mass, inertia=inertia)
+        if fixed:
+            body.state.blockedDOFs = "xyzXYZ"
+        O.bodies.append(body)
+
+
+def put_loop(*, kn, kt, mu, tool=None, damping=0.0, ratcheting_free=True):
+    """YADE's own loop: bonds, rock on rock, tool on rock (M 4.5), explicit integration.
+
+    tool: (kn, kt, mu) of its contacts, None without a tool; damping: non-viscous (Cundall's), a fraction of each force;
+    ratcheting_free: shear between spheres by their full radii, YADE's way, which does not see where they really touch
+    (kernels.stability); false: as the points of contact move, so that the springs give back what they took.
+    """
+    parameters = [Ip2_FrictMat_FrictMat_FrictPhys(kn=exactly(kn), ks=exactly(kt), frictAngle=exactly(math.atan(mu)))]
+    laws = [Law2_ScGeom_FrictPhys_CundallStrack()]
+    if tool:
+        tool_kn, tool_kt, tool_mu = tool
+        parameters.append(Ip2_FrictMat_FrictViscoMat_FrictViscoPhys(
+            kn=exactly(tool_kn), kRatio=exactly(tool_kt / tool_kn), frictAngle=exactly(math.atan(tool_mu))))
+        laws.append(Law2_ScGeom_FrictViscoPhys_CundallStrackVisco(traceEnergy=True))
+    geometry = [Ig2_Sphere_Sphere_ScGeom(avoidGranularRatcheting=ratcheting_free)]
+    _put_engines([Bo1_Sphere_Aabb()], geometry, parameters, laws, damping)
+
+
+def put_loop_with_facets(*, kn, kt, mu, tool, damping=0.0, ratcheting_free=True):
+    """The same beside a tool of facets.
+
+    YADE puts a facet first into its contacts, and has no functor for (steel, rock) in this order. Steel and loose rock
+    are of one kind here, FrictViscoMat, and the constants go by the pair of materials; rock has no dashpot. One law then
+    keeps one account of friction, which engines.facets divides.
+    """
+    rock, steel = O.materials["loose rock"].id, O.materials["steel"].id
+
+    def by_pair(of_rock, of_tool):
+        return MatchMaker(matches=((rock, rock, of_rock), (rock, steel, of_tool)))
+
+    tool_kn, tool_kt, tool_mu = tool
+    parameters = [Ip2_FrictViscoMat_FrictViscoMat_FrictViscoPhys(
+        kn=by_pair(kn, tool_kn), kRatio=by_pair(kt / kn, tool_kt / tool_kn),
+        frictAngle=by_pair(math.atan(mu), math.atan(tool_mu)))]
+    geometry = [Ig2_Sphere_Sphere_ScGeom(avoidGranularRatcheting=ratcheting_free), Ig2_Facet_Sphere_ScGeom()]
+    _put_engines([Bo1_Sphere_Aabb(), Bo1_Facet_Aabb()], geometry, parameters,
+                 [Law2_ScGeom_FrictViscoPhys_CundallStrackVisco(traceEnergy=True)], damping)
+
+
+def _put_engines(bounds, geometry, parameters, laws, damping):
+    O.engines = [
+        ForceResetter(),
+        InsertionSortCollider(bounds, avoidSelfInteractionMask=2),
+        InteractionLoop(geometry, [Ip2_JCFpmMat_JCFpmMat_JCFpmPhys(cohesiveTresholdIteration=1), *parameters],
+                        [Law2_ScGeom_JCFpmPhys_JointedCohesiveFrictionalPM(neverErase=True), *laws]),
+        NewtonIntegrator(damping=damping)]
+
+
+def make_bonds(rock, bonds):
+    """Bond the pairs of the specimen, stress-free as they lie (one step of no length), and end the bonding."""
+    for i, j in rock.pairs.tolist():
+        utils.createInteraction(i, j)
+    O.dt = 0.0
+    O.step()
+    bonds.bond()
+    loose = O.materials["loose rock"]
+    for i in range(rock.count):
+        O.bodies[i].mat = loose
+
+
+def finite_disc(position, radius, *, material, mask, mass, inertia):
+    """A disc of unit thickness: a YADE sphere that stays in the plane, with a disc's mass and inertia."""
+    body = sphere((*position, 0.0), radius, material=material, mask=mask, mass=mass, inertia=inertia)
+    body.state.blockedDOFs = "zXY"
+    return body
+
+
+def sphere(position, radius, *, material, mask, mass, inertia):
+    """A sphere in space."""
+    body = utils.sphere(position, radius, material=material, mask=mask)
+    body.state.mass, body.state.inertia = mass, (inertia,) * 3
+    return body

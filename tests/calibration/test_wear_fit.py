@@ -1,0 +1,128 @@
+"""The fitting helper on M's four rows and on rows of one's own, as a user runs it."""
+import json
+
+import numpy as np
+import pytest
+
+from calibration.fitting import wear_fit
+from calibration.fitting.wear_fit import EXAMPLE, fit, main, read
+from rockwear.kernels.archard import BRINELL, MET91
+
+
+def rows_of(found):
+    return [k for one in found.values() for k, _ in one["rows"]]
+
+
+def test_ms_four_rows_with_ms_unit_of_hardness_give_ms_k():
+    """M rounds a HB to 10 MPa, and its k to 1e-4; 6.14 and 6.15 are printed in each other's place."""
+    found = rows_of(fit(read(EXAMPLE, 1e7), brinell=1e7))
+    assert [round(k, 4) for k in found[:2]] == [0.0023, 0.0028]
+    assert found[2] == pytest.approx(0.01125, rel=2e-3) and found[3] == pytest.approx(0.0113, rel=2e-3)
+
+
+def test_ms_four_rows_in_si_hold_ms_k_within_their_errors():
+    found = fit(read(EXAMPLE))
+    singles = [pair for one in found.values() for pair in one["rows"]]
+    for (k, u), published in zip(singles, (0.0023, 0.0028, 0.0113, 0.01125)):
+        assert abs(k - published) < u < 0.05 * k
+    assert found["MET71"]["law"].k == pytest.approx(0.0025, abs=found["MET71"]["fit"].uncertainty[0])
+    # The two tests of MET 71 differ by more than their errors; those of MET 91 agree.
+    assert found["MET71"]["fit"].misfit > 4 > 1 > found["MET91"]["fit"].misfit
+
+
+def test_all_linear_forms_give_one_k_and_the_power_law_its_own():
+    rows = read(EXAMPLE)
+    assert rows_of(fit(rows, law="dissipation", mu=0.42)) == pytest.approx(rows_of(fit(rows)), rel=1e-12)
+    assert rows_of(fit(rows, law="power", mu=0.42, exponent=1.0)) == pytest.approx(rows_of(fit(rows)), rel=1e-12)
+    square = fit(rows, law="power", exponent=2.0)["MET91"]
+    tests = square["tests"]
+    exact = tests.depth / tests.distance * (tests.hardness / tests.pressure)**2
+    assert square["rows"][0][0] == pytest.approx(exact[0])
+
+
+def test_errors_propagate_column_by_column(tmp_path):
+    """3 % of force, 4 % of depth: 5 % of k; the temperature counts by the slope of H."""
+    file = tmp_path / "mine.csv"
+    file.write_text("steel,force [kN],area [cm2],distance [km],depth [um],temperature [K],force error [kN],"
+                    "depth error [um]\nMET91,1,1,0.5,500,500,0.03,20\n", encoding="utf-8")
+    (k, u), = fit(read(file))["MET91"]["rows"]
+    assert k == pytest.approx(500e-6 * MET91(500.0) / (1e7 * 500), rel=1e-12)
+    assert u / k == pytest.approx(0.05, rel=1e-12)
+    file.write_text("steel,pressure [MPa],distance [m],depth [mm],temperature [degC],temperature error [K]\n"
+                    "MET91,10,500,0.5,550,10\n", encoding="utf-8")
+    (k, u), = fit(read(file))["MET91"]["rows"]
+    slope = (375 - 247) / 100 * BRINELL
+    assert u / k == pytest.approx(10 * slope / MET91(550 + 273.15), rel=1e-9)
+
+
+def test_errors_count_as_often_as_their_quantity_stands_in_k(tmp_path):
+    """k = (w / s) (H / p)^n, and with measured friction k = w H mu A / (s T), whatever the force."""
+    file = tmp_path / "mine.csv"
+    file.write_text("pressure [MPa],distance [m],depth [mm],hardness [MPa],pressure error [MPa],hardness error [MPa],depth error [mm]\n"
+                    "10,500,0.5,5000,1,200,0.015\n", encoding="utf-8")
+    for law, exponent in (("pressure", 1.0), ("dissipation", 1.0), ("power", 2.0)):
+        (k, u), = fit(read(file), law=law, exponent=exponent)[""]["rows"]
+        assert u / k == pytest.approx(np.hypot(0.03, exponent * np.hypot(0.1, 0.04)), rel=1e-12)
+    file.write_text("force [N],friction [N],area [mm2],distance [m],depth [mm],hardness [MPa],force error [N],friction error [N],"
+                    "area error [mm2]\n1000,300,30,500,0.5,5000,100,12,0.9\n", encoding="utf-8")
+    (_, u), (k, v) = (fit(read(file), law=law)[""]["rows"][0] for law in ("pressure", "dissipation"))
+    assert u / k == pytest.approx(np.hypot(0.1, 0.03), rel=1e-12) and v / k == pytest.approx(np.hypot(0.04, 0.03), rel=1e-12)
+
+
+def test_an_error_missing_in_a_row_is_said(tmp_path, capsys):
+    file = tmp_path / "mine.csv"
+    file.write_text("pressure [MPa],distance [m],depth [mm],hardness [MPa],depth error [mm]\n10,500,0.5,5000,0.01\n"
+                    "10,500,0.6,5000,\n", encoding="utf-8")
+    assert main([str(file)]) == 0 and "some tests state no error" in capsys.readouterr().out
+    (_, stated), (_, none) = fit(read(file))[""]["rows"]
+    assert stated > 0 and np.isnan(none)
+
+
+def test_own_steel_by_hardness_and_measured_friction(tmp_path):
+    file = tmp_path / "mine.csv"
+    lines = [f",{p},{p * 2.5 * 0.4},100,{1e3 * 4.0 * (p / 2000)**1.5 * 100},2000" for p in (5, 10, 20, 30)]
+    file.write_text("\ufeffsteel,pressure [MPa],friction [N],distance [m],depth [mm],hardness [MPa],force [N]\n"
+                    + "\n".join(f"{line},{p * 2.5}" for line, p in zip(lines, (5, 10, 20, 30))) + "\n", encoding="utf-8")
+    one = fit(read(file), law="power", mu=0.4, exponent=None)[""]
+    assert one["law"].k == pytest.approx(4.0, rel=1e-9) and one["exponent"][0] == pytest.approx(1.5, rel=1e-9)
+
+
+def test_command_line_leaves_numbers_and_a_figure(tmp_path, capsys):
+    assert main([str(EXAMPLE), "--out", str(tmp_path / "out")]) == 0
+    said = capsys.readouterr().out
+    assert "MET71  all tests: k = 0.0024713" in said and "the tests differ by" in said
+    stored = json.loads((tmp_path / "out/wear_fit.json").read_text(encoding="utf-8"))
+    assert np.shape(stored["steels"]["MET91"]["k_of_each_test"]) == (2,)
+    assert (tmp_path / "out/wear_fit.png").stat().st_size > 1e4
+
+
+@pytest.mark.parametrize("text, words", [
+    ("", "a CSV file with a header"), ("steel,force [lb]\nMET71,1\n", "column force = lb: must be one of N, kN"),
+    ("colour [m]\n1\n", "column colour"),
+    ("steel,pressure [Pa],distance [m],depth [mm],temperature [K]\nMET71,x,1,1,400\n",
+     "pressure in line 2 = x Pa: must be a number"),
+    ("steel,pressure [Pa],distance [m],depth [mm],temperature [K]\nMET71,1e6,1,1,1400\n", "temperature = 1400 K"),
+    ("steel,pressure [Pa],distance [m],depth [mm],temperature [K]\nX12,1e6,1,1,400\n", "steel = X12"),
+    ("steel,pressure [Pa],distance [m],depth [mm],temperature [K]\nMET71,1e6,1,-1,400\n", "depth = -0.001 m: must be"),
+    ("steel,pressure [Pa],distance [m],depth [mm],temperature [K],depth error [mm]\nMET71,1e6,1,1,400,-0.1\n",
+     "depth error in line 2 = -0.1 mm: must be at least 0"),
+    ("steel,force [N],distance [m],depth [mm],temperature [K]\nMET71,1e6,1,1,400\n", "area = nothing"),
+    ("pressure [Pa],distance [m],depth [mm],hardness [Pa],force error [N]\n1e6,1,1,5e9,3\n",
+     "force error = 3 N: must be given with force"),
+    ("pressure [Pa],force [N],distance [m],depth [mm],hardness [Pa]\n1e6,0,1,1,5e9\n", "force = 0 N: must be greater than 0"),
+    ("steel,pressure [Pa],depth [mm],temperature [K]\nMET71,1e6,1,400\n", "distance = nothing")])
+def test_bad_files_end_in_one_line(tmp_path, capsys, text, words):
+    file = tmp_path / "bad.csv"
+    file.write_text(text, encoding="utf-8")
+    assert main([str(file)]) == 2
+    said = capsys.readouterr().err
+    assert said.startswith("error: ") and words in said and said.count("\n") == 1
+
+
+def test_a_file_that_is_not_there(capsys):
+    assert main(["nowhere.csv"]) == 2 and "nowhere.csv" in capsys.readouterr().err
+
+
+def test_documented_columns_are_those_that_are_read():
+    for name in wear_fit.UNITS:
+        assert name in wear_fit.__doc__

@@ -1,0 +1,88 @@
+"""STL files in and out, and the triangles that stand for facets."""
+import math
+import struct
+
+import numpy as np
+import pytest
+
+from rockwear.model.facet_tool import FacetTool, corners, incentres, read_stl, write_stl
+from rockwear.kernels.boundary import nearest_on_triangle, prism, volume
+from rockwear.kernels.checks import ParameterError
+from rockwear.kernels.polygon import tooth
+
+
+TOOTH = tooth(height=0.07, width=0.045, rake=0.1, clearance=math.radians(5), tip_radius=4e-3)
+
+
+def test_stl_there_and_back(tmp_path):
+    vertices, facets = prism(TOOTH, 0.02, 6e-3)
+    write_stl(tmp_path / "tooth.stl", vertices, facets)
+    again = read_stl(tmp_path / "tooth.stl")
+    assert len(again[0]) == len(vertices) and len(again[1]) == len(facets)
+    assert volume(*again) == pytest.approx(volume(vertices, facets), rel=1e-6)
+    assert volume(*read_stl(tmp_path / "tooth.stl", scale=2.0)) == pytest.approx(8 * volume(*again), rel=1e-12)
+
+
+def test_stl_as_text(tmp_path):
+    points = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+    lines = ["solid pick"]
+    for facet in ([0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]):
+        lines += ["facet normal 0 0 0", "outer loop", *("vertex %g %g %g" % tuple(points[i]) for i in facet), "endloop", "endfacet"]
+    (tmp_path / "pick.stl").write_text("\n".join([*lines, "endsolid pick", ""]), encoding="utf-8")
+    assert volume(*read_stl(tmp_path / "pick.stl")) == pytest.approx(1 / 6)
+
+
+def broken(kind, path):
+    vertices, facets = prism(TOOTH, 0.02, 6e-3)
+    if kind == "hole":
+        facets = facets[1:]
+    if kind == "flipped":
+        facets[5] = facets[5, ::-1]
+    if kind == "inside out":
+        facets = facets[:, ::-1]
+    write_stl(path, vertices, facets)
+
+
+@pytest.mark.parametrize("kind, words", [("hole", "holes"), ("flipped", "flipped"), ("inside out", "normals outwards")])
+def test_damaged_surfaces_are_refused(kind, words, tmp_path):
+    broken(kind, tmp_path / "tooth.stl")
+    with pytest.raises(ParameterError, match=words) as caught:
+        read_stl(tmp_path / "tooth.stl")
+    assert str(caught.value).startswith("stl = ") and "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("content", [None, b"", b"not a mesh", b"solid\nfacet normal 0 0", b"\0" * 80 + struct.pack("<I", 900)])
+def test_unreadable_files_are_refused(content, tmp_path):
+    if content is not None:
+        (tmp_path / "tooth.stl").write_bytes(content)
+    with pytest.raises(ParameterError) as caught:
+        read_stl(tmp_path / "tooth.stl")
+    assert "\n" not in str(caught.value)
+
+
+def test_a_segment_in_yade_is_a_triangle_whose_nearest_point_lies_in_the_plane():
+    vertices, facets = np.array([[0, 0], [1, 0.5], [0.2, 2]]) * 1e-3, np.array([[0, 1], [1, 2], [2, 0]])
+    chance = np.random.default_rng(0)
+    for triangle, (i, j) in zip(corners(vertices, facets), facets):
+        p, along = vertices[i], vertices[j] - vertices[i]
+        for point in chance.uniform(-1e-3, 3e-3, (30, 2)):
+            exact = p + along * np.clip((point - p) @ along / (along @ along), 0, 1)
+            assert nearest_on_triangle(np.append(point, 0.0), triangle) == pytest.approx(np.append(exact, 0.0), abs=1e-15)
+
+
+def test_the_incentre_is_as_far_from_all_sides():
+    triangles = np.random.default_rng(1).random((20, 3, 3))
+    for triangle, centre in zip(triangles, incentres(triangles)):
+        sides = [(triangle[k], triangle[(k + 1) % 3]) for k in range(3)]
+        away = [np.linalg.norm(np.cross(q - p, centre - p)) / np.linalg.norm(q - p) for p, q in sides]
+        assert away == pytest.approx([away[0]] * 3, rel=1e-12)
+
+
+def test_the_shank_holds_top_and_back():
+    tool = FacetTool.of_outline(TOOTH, segment=2e-3, density=7830.0)
+    fixed = tool.first[tool.first_facets[tool.boundary.fixed]]
+    assert ((fixed[..., 1] > 0.07 - 1e-12).all(axis=1) | (fixed[..., 0] < tool.first[:, 0].min() + 1e-12).all(axis=1)).all()
+    sides = np.linalg.norm(np.diff(fixed, axis=1), axis=2).sum()
+    top, back = tool.first[tool.first[:, 1] > 0.07 - 1e-12], tool.first[tool.first[:, 0] < tool.first[:, 0].min() + 1e-12]
+    assert sides == pytest.approx(np.ptp(top[:, 0]) + np.ptp(back[:, 1]), rel=1e-9)
+    assert tool.foremost(below=0.01) == pytest.approx(0.0, abs=1e-4)

@@ -1,0 +1,96 @@
+"""Scenes are run as a user runs them: YADE in a process of its own, judged by exit code, words and numbers."""
+import json
+import os
+import subprocess
+import time
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+
+ROOT = Path(__file__).resolve().parents[1]
+SMALL = dict(width=0.06, height=0.04, radius_min=1.5e-3, radius_max=2.2e-3, tooth_height=0.03, tooth_width=0.02,
+             rake=10, clearance=10, tip_radius=2e-3, depth_of_cut=0.01, start_up=0.0012, cycles=1, cycle_time=4e-4,
+             snapshot_period=4e-4)
+"""A test tooth in miniature: every mechanism of the real one in a few seconds."""
+
+
+def arguments(values):
+    """Command line words of a dict of parameters."""
+    return [word for name, value in values.items() for word in (f"--{name}", str(value))]
+
+
+def start(script, words=(), threads=1, **options):
+    """Start a YADE script, its output captured."""
+    return subprocess.Popen(["yade", "-n", "-x", f"-j{threads}", str(script), *words], stdout=subprocess.PIPE,
+                            stderr=subprocess.PIPE, stdin=subprocess.DEVNULL, encoding="utf-8",
+                            **{"env": {**os.environ, "PYTHONPATH": str(ROOT)}, **options})
+
+
+def finish(process, out=None):
+    """Wait for it. -> exit code, what it said, and the summary if there is one."""
+    stdout, stderr = process.communicate(timeout=300)
+    summary = json.loads((out / "summary.json").read_text(encoding="utf-8")) if out and (out / "summary.json").exists() else None
+    return SimpleNamespace(code=process.returncode, stdout=stdout, stderr=stderr, summary=summary, out=out)
+
+
+def run_script(script, *words, out=None, **options):
+    """Run a YADE script to its end."""
+    return finish(start(script, words, **options), out)
+
+
+def checks_of(name, folder, *words):
+    """What tests/scenes/scripts/NAME.py found: a script that makes all its checks in one process, and writes them as JSON."""
+    file = folder / "checks.json"
+    done = run_script(ROOT / f"tests/scenes/scripts/{name}.py", *words, str(file))
+    assert done.code == 0, done.stderr
+    return json.loads(file.read_text(encoding="utf-8"))
+
+
+def assert_as_if_never_stopped(resumed, never, *tables):
+    """A resumed run ended with the results, balances and tables, to the last bit, of one that was never stopped."""
+    assert resumed.code == 0, resumed.stderr
+    assert resumed.summary["results"] == never.summary["results"]
+    assert resumed.summary["balances"] == never.summary["balances"]
+    for name in ("history.csv", *tables):
+        assert (resumed.out / name).read_bytes() == (never.out / name).read_bytes()
+
+
+def tooth_cycles(out, *flags, **values):
+    """Run the miniature test tooth with some values of one's own."""
+    script = ROOT / "yade_scripts/tooth_cycles.py"
+    return run_script(script, *arguments({**SMALL, **values}), "--out", str(out), *flags, out=out)
+
+
+tooth_cycles.__test__ = False
+
+
+def interrupt(out, number, after, **values):
+    """Start the miniature test tooth, and send it a signal once it has written `after` checkpoints. -> as finish."""
+    return interrupt_script(ROOT / "yade_scripts/tooth_cycles.py", out, number, after, **{**SMALL, **values})
+
+
+def interrupt_script(script, out, number, after, **values):
+    """Start a script, from its checkpoint if there is one, and send it a signal as `interrupt` does."""
+    process = start(script, [*arguments(values), "--out", str(out),
+                             *(["--resume"] if (out / "checkpoint").exists() else [])])
+    deadline = time.time() + 120
+    while time.time() < deadline and process.poll() is None and _progress(out) < after:
+        time.sleep(0.02)
+    process.send_signal(number)
+    return finish(process, out)
+
+
+def _progress(out):
+    try:
+        return json.loads((out / "checkpoint/current.json").read_text(encoding="utf-8"))["set"]
+    except (OSError, ValueError):
+        return 0
+
+
+def history(out):
+    """{name: column} of a run's history.csv."""
+    lines = (out / "history.csv").read_text(encoding="utf-8").splitlines()
+    table = np.array([[float(cell) for cell in line.split(",")] for line in lines[1:]])
+    return {name: table[:, i] for i, name in enumerate(lines[0].split(","))}
+
