@@ -1,55 +1,63 @@
-"""An engine of ours in YADE's loop: what a visit does, in which phase of the step it comes, what survives a restart."""
+"""Python engines in YADE's loop: what a visit does, in which phase of the step it comes, what survives a restart."""
+from abc import ABC, abstractmethod
 from time import perf_counter
 
 from yade import O, PyRunner
 
+START, FORCES, MOTION = "start", "forces", "motion"
+"""Phases of a step: before its forces; after the forces and before the integrator; after the integrator."""
 
-_live = {}
+_registered = {}
 
 failures = []
-"""What engines raised inside YADE's loop, which would otherwise lose it."""
+"""Exceptions of engines, which YADE's loop would otherwise lose."""
 
 
-class Engine:
-    """One visit in `act`; `state`/`restore` carry what must survive a restart; `log` names what a recorder may write."""
+class Engine(ABC):
+    """One visit in `act`; `state`/`restore` carry what must survive a restart; `log` names what a recorder may write.
+
+    period: steps between visits; None: YADE's loop never calls this engine.
+    """
 
     name = None
-    """The name under which PyRunner finds the engine."""
+    """The name by which `call` finds the engine, unique in a scene."""
+    phase = MOTION
 
-    def __init__(self):
+    def __init__(self, *, period=1):
+        self.period = period
         self.last_iteration = O.iter
         self.wall_time = 0.0
         self.visits = 0
 
+    @abstractmethod
     def act(self):
         """One visit, at the present step."""
-        raise NotImplementedError(f"{type(self).__name__} has no visit")
 
     def elapsed(self):
-        """Seconds of the simulation since the last call. (PyRunner may come late or early: nobody assumes its period.)"""
+        """Simulated seconds since the last call; a visit may come earlier or later than the period says."""
         steps = O.iter - self.last_iteration
         self.last_iteration = O.iter
         return steps * O.dt
 
     def connect(self):
-        """Find YADE's objects again: the scene in O has just been built or loaded."""
+        """Find YADE's objects: the scene in O has just been built or loaded."""
 
     def state(self):
-        """What must survive a restart: a dict of numbers, copied arrays, and dicts of them."""
+        """What must survive a restart: a dict of numbers, strings, copied arrays, and dicts of them."""
         return {}
 
     def restore(self, state):
-        """Take back what `state` gave."""
+        """Set what `state` gave."""
 
     def log(self):
         """{name: (value, unit)} of what may be recorded now."""
         return {}
 
 
-def fire(*names):
-    """One visit of each of the named engines, its wall time counted. PyRunner calls this."""
+def call(*names):
+    """One visit of each of the named engines; adds to their wall times. PyRunner calls this."""
     for name in names:
-        engine = _live[name]
+        engine = _registered[name]
         begin = perf_counter()
         try:
             engine.act()
@@ -61,19 +69,29 @@ def fire(*names):
 
 
 def register(engines):
-    """Make these engines, and no others, the ones that `fire` finds."""
-    _live.clear()
+    """Make these engines, and no others, the ones that `call` finds."""
+    _registered.clear()
     failures.clear()
-    _live.update({engine.name: engine for engine in engines})
+    _registered.update({engine.name: engine for engine in engines})
+
+
+def insert(engines):
+    """Insert PyRunners of these engines into O.engines, whose last one is the integrator, by phase and period.
+
+    Within a phase engines keep their order; those of one period share a runner, at the place of the first of them.
+    """
+    start, forces, motion = (runners({engine.name: engine.period for engine in engines
+                                      if engine.phase == phase and engine.period}) for phase in (START, FORCES, MOTION))
+    O.engines = start + O.engines[:-1] + forces + O.engines[-1:] + motion
 
 
 def runners(periods):
-    """PyRunners that visit engines at their periods: {name: steps}, in order. Engines of one period share a runner,
-    for a runner's own cost is that of several short visits."""
+    """PyRunners that call engines at their periods: {name: steps}, in order. Engines of one period share a runner,
+    because a runner alone costs as much as several short visits."""
     groups = {}
     for name, period in periods.items():
         groups.setdefault(int(period), []).append(name)
-    return [PyRunner(command=f"import rockwear.engines.base; rockwear.engines.base.fire({', '.join(map(repr, names))})",
+    return [PyRunner(command=f"import rockwear.engines.base; rockwear.engines.base.call({', '.join(map(repr, names))})",
                      iterPeriod=period) for period, names in groups.items()]
 
 

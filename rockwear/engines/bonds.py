@@ -8,7 +8,7 @@ from scipy.spatial.transform import Rotation
 from yade import Ig2_Sphere_Sphere_ScGeom, Law2_ScGeom_JCFpmPhys_JointedCohesiveFrictionalPM, O, Subdomain, Vector3
 
 from rockwear.engines.access import geometry_functor, law_functor
-from rockwear.engines.base import Engine
+from rockwear.engines.base import FORCES, Engine
 from rockwear.engines.softening import SofteningBond, _lost, _set_domain
 
 
@@ -76,9 +76,10 @@ class Bonds(Engine):
     """
 
     name = "bonds"
+    phase = FORCES
 
-    def __init__(self, *, pairs, law, strength_factor=None, clock):
-        super().__init__()
+    def __init__(self, *, pairs, law, strength_factor=None, clock, period=1):
+        super().__init__(period=period)
         self.pairs = np.asarray(pairs)
         self.bodies = np.unique(self.pairs).tolist()
         self.law = law
@@ -368,8 +369,8 @@ class Separation(Engine):
 
     name = "separation"
 
-    def __init__(self, bonds):
-        super().__init__()
+    def __init__(self, bonds, *, period=1):
+        super().__init__(period=period)
         self.bonds = bonds
 
     def act(self):

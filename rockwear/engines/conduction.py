@@ -10,8 +10,8 @@ class Conduction(Engine):
 
     name = "heat"
 
-    def __init__(self, *, network, step):
-        super().__init__()
+    def __init__(self, *, network, step, period=1):
+        super().__init__(period=period)
         self.network, self.step = network, step
 
     def act(self):

@@ -15,8 +15,8 @@ class BackgroundDamping(Engine):
 
     name = "background_damping"
 
-    def __init__(self, *, rate, bodies):
-        super().__init__()
+    def __init__(self, *, rate, bodies, period=1):
+        super().__init__(period=period)
         self.rate, self.bodies = rate, bodies
         self.dissipated = 0.0
 

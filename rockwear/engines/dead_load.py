@@ -16,8 +16,8 @@ class DeadLoad(Engine):
 
     name = "dead_load"
 
-    def __init__(self, *, bodies, load, kn):
-        super().__init__()
+    def __init__(self, *, bodies, load, kn, period=1):
+        super().__init__(period=period)
         self.bodies, self.load, self.kn = bodies, load, kn
         self.descent = 0.0
 

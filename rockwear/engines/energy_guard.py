@@ -15,8 +15,8 @@ class EnergyGuard(Engine):
     name = "energy_guard"
     runaway = 10.0
 
-    def __init__(self, *, work, floor):
-        super().__init__()
+    def __init__(self, *, work, floor, period=1):
+        super().__init__(period=period)
         self.work, self.floor = work, floor
 
     def act(self):

@@ -25,8 +25,8 @@ class Expansion(Engine):
 
     name = "expansion"
 
-    def __init__(self, *, coefficient, rock, reference, temperature, bonds, loose=tuple):
-        super().__init__()
+    def __init__(self, *, coefficient, rock, reference, temperature, bonds, loose=tuple, period=1):
+        super().__init__(period=period)
         self.coefficient, self.reference, self.temperature = coefficient, reference, temperature
         self.bonds, self.loose = bonds, loose
         self.cold, (i, j) = rock.radii, rock.pairs.T

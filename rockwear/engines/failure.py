@@ -10,8 +10,8 @@ class Failure(Engine):
 
     name = "failure"
 
-    def __init__(self, *, stress, broken, drop):
-        super().__init__()
+    def __init__(self, *, stress, broken, drop, period=1):
+        super().__init__(period=period)
         self.stress, self.broken, self.drop = stress, broken, drop
         self.peak = 0.0
 

@@ -30,8 +30,8 @@ class Heat(Engine):
 
     def __init__(self, *, network, bonds, rock_friction, tool_contact, rock, tool, heat_fraction, tool_share,
                  contact_conductance, convection, ambient, rock_paths, tool_paths, surface_period,
-                 wear_acceleration=1.0, conduction=True, shank_temperature=None, time_scale=lambda: 1.0):
-        super().__init__()
+                 wear_acceleration=1.0, conduction=True, shank_temperature=None, time_scale=lambda: 1.0, period=1):
+        super().__init__(period=period)
         self.network, self.bonds, self.rock_friction, self.tool_contact = network, bonds, rock_friction, tool_contact
         self.rock, self.tool, self.n = rock, tool, rock.count
         self.heat_fraction, self.tool_share, self.conduction = heat_fraction, tool_share, conduction

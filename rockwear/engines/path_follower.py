@@ -13,9 +13,9 @@ class PathFollower(Engine):
 
     name = "path_follower"
 
-    def __init__(self, *, bodies, clock, period):
-        super().__init__()
-        self.bodies, self.clock, self.period = bodies, clock, period
+    def __init__(self, *, bodies, clock, period=1):
+        super().__init__(period=period)
+        self.bodies, self.clock = bodies, clock
 
     def act(self):
         # This engine comes after the integrator: positions are already those of the next step.

@@ -15,8 +15,8 @@ class Platens(Engine):
 
     name = "platens"
 
-    def __init__(self, *, left, right, velocity):
-        super().__init__()
+    def __init__(self, *, left, right, velocity, period=1):
+        super().__init__(period=period)
         self.left, self.right, self.velocity = left, right, velocity
         self.work = self.impulse = self.unbalanced = self.time = 0.0
 

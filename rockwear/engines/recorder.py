@@ -9,8 +9,8 @@ class Recorder(Engine):
 
     name = "recorder"
 
-    def __init__(self, sources):
-        super().__init__()
+    def __init__(self, sources, *, period=1):
+        super().__init__(period=period)
         self.sources = sources
         self.header, self.rows = [], []
 

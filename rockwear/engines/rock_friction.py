@@ -4,7 +4,7 @@ import numpy as np
 from yade import InsertionSortCollider, JCFpmPhys, O
 
 from rockwear.engines.access import SLIDING, contact_energy, yade_engine, yade_friction_law
-from rockwear.engines.base import Engine
+from rockwear.engines.base import FORCES, Engine
 from rockwear.engines.softening import _lost
 
 
@@ -19,9 +19,10 @@ class RockFriction(Engine):
     """
 
     name = "rock_friction"
+    phase = FORCES
 
-    def __init__(self, *, bonds, motion):
-        super().__init__()
+    def __init__(self, *, bonds, motion, period=1):
+        super().__init__(period=period)
         self.bonds, self.motion = bonds, motion
         self.particles = len(motion.per_mass)
         self.work = np.zeros(self.particles)

@@ -3,7 +3,7 @@ import numpy as np
 from yade import O, Subdomain, Vector3
 
 from rockwear.kernels.shear_rotation import shear_to_start_from, turning_rates
-from rockwear.engines.base import Engine
+from rockwear.engines.base import START, Engine
 from rockwear.engines.bonds import INTACT
 
 FAST = 0.01
@@ -21,9 +21,10 @@ class Turning(Engine):
     """
 
     name = "shear_rotation"
+    phase = START
 
-    def __init__(self, *, bonds, radii):
-        super().__init__()
+    def __init__(self, *, bonds, radii, period=1):
+        super().__init__(period=period)
         self.bonds, self.radii = bonds, radii
         self.fast = np.zeros(0, int)
 

@@ -4,7 +4,7 @@ import numpy as np
 from yade import InsertionSortCollider, O, Vector3
 
 from rockwear.engines.access import SLIDING, contact_energy, yade_engine
-from rockwear.engines.base import Engine
+from rockwear.engines.base import FORCES, Engine
 from rockwear.kernels.wear_laws import NORMAL, WORK
 
 
@@ -13,7 +13,7 @@ class ToolContact(Engine):
 
     tool: the tool's bodies (see scene.ToolBodies); motion: engines.motion.VelocityIncrement of the rock;
     needs: sums (force, exponent) of F^exponent times slip by tool particle that the wear law takes (kernels.wear_laws);
-    period: steps between samples, each of which stands for all of them. To be visited in every step.
+    sampling_period: steps between samples, each of which stands for all of them. To be visited in every step.
 
     A contact that slides dissipates the slip that its spring does not take up, (|trial force| - |Ft|) / ks, times the
     mean of the forces before and after the step: so the leapfrog's work and the springs' energy balance exactly. (YADE's
@@ -24,12 +24,13 @@ class ToolContact(Engine):
     """
 
     name = "tool_contact"
+    phase = FORCES
     born = 0.0
     """J with which contacts have begun that no work was done for."""
 
-    def __init__(self, *, tool, motion, needs=(WORK,), period=1):
-        super().__init__()
-        self.tool, self.motion, self.period = tool, motion, period
+    def __init__(self, *, tool, motion, needs=(WORK,), sampling_period=1, period=1):
+        super().__init__(period=period)
+        self.tool, self.motion, self.sampling_period = tool, motion, sampling_period
         particles = len(motion.per_mass)
         self.tool_work = np.zeros(tool.count)
         self.rock_work = np.zeros(particles)
@@ -59,9 +60,9 @@ class ToolContact(Engine):
     def act(self):
         if self.collider.numAction != self.collided:
             self.look_around()
-        if O.iter % self.period == 0:
+        if O.iter % self.sampling_period == 0:
             self._sample_all()
-        if (O.iter + 1) % self.period == 0:
+        if (O.iter + 1) % self.sampling_period == 0:
             self._note_springs()
 
     def _sample_all(self):

@@ -17,8 +17,8 @@ class WearEngine(Engine):
 
     name = "wear"
 
-    def __init__(self, *, contact, law, count, volume_unit="m3/m"):
-        super().__init__()
+    def __init__(self, *, contact, law, count, volume_unit="m3/m", period=1):
+        super().__init__(period=period)
         self.contact, self.law, self.volume_unit = contact, law, volume_unit
         self.contact_energy_removed = self.work_used = 0.0
         self.events, self.rubbed = np.zeros(count, int), np.zeros(count, bool)

@@ -16,8 +16,8 @@ class WearProfile(Engine):
 
     name = "wear_profile"
 
-    def __init__(self, *, wear, place):
-        super().__init__()
+    def __init__(self, *, wear, place, period=1):
+        super().__init__(period=period)
         self.wear, self.place, self.places = wear, place, int(place.max()) + 1
         self.forget()
 

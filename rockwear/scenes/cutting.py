@@ -349,7 +349,7 @@ class Cutting(Scene):
         self.bodies = ToolBodies(tool, self.motion)
         self.rock_friction = RockFriction(bonds=self.bonds, motion=motion)
         self.contact = ToolContact(tool=self.bodies, motion=motion, needs=self.wear_law.needs,
-                                   period=v.sampling_period)
+                                   sampling_period=v.sampling_period)
         self.wear = Wear(contact=self.contact, erosion=tool.erosion, tool=self.bodies, law=self.wear_law,
                          hardness=self.hardness, temperature=self._tool_temperature, on_removal=self._on_removal)
 

@@ -307,7 +307,7 @@ class ParticleCutting3D(Cutting3D):
         self.bodies = SphereBodies(self.tool, self.motion)
         self.rock_friction = RockFriction(bonds=self.bonds, motion=motion)
         self.contact = ToolContact(tool=self.bodies, motion=motion, needs=self.wear_law.needs,
-                                   period=self.v.sampling_period)
+                                   sampling_period=self.v.sampling_period)
         self.wear = Wear(contact=self.contact, erosion=self.tool.erosion, tool=self.bodies, law=self.wear_law,
                          hardness=self.hardness, temperature=self._tool_temperature, on_removal=self._on_removal,
                          volume_unit=self.volume_unit)
