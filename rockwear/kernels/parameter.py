@@ -1,8 +1,8 @@
-"""Parameters and their rules: name, default, unit, meaning, source."""
-from dataclasses import dataclass
+"""Parameters, their rules and groups: name, default, unit, meaning, source, and when they are used."""
+from dataclasses import dataclass, replace
 from typing import Any, Callable
 
-from rockwear.kernels.checks import finite, require
+from rockwear.kernels.checks import ParameterError, finite, require
 
 
 def number(low=None, high=None):
@@ -22,6 +22,28 @@ def above_zero(name, value, unit):
     return found
 
 
+def plausible(low, high):
+    """A rule: a number greater than 0 and in [low, high], wide bounds outside of which no material and no process is."""
+    def rule(name, value, unit):
+        found = above_zero(name, value, unit)
+        require(low <= found <= high, name, found, f"between {low:g} and {high:g}", unit)
+        return found
+    return rule
+
+
+RENAMED_IN = "0.2"
+"""The version that renamed parameters and values."""
+
+stiffness = plausible(1.0, 1e15)
+"""A rule: N/m, of a contact or a bond."""
+density = plausible(1.0, 1e6)
+"""A rule: kg/m3."""
+speed = plausible(1e-9, 1e5)
+"""A rule: m/s."""
+duration = plausible(1e-12, 1e8)
+"""A rule: s, up to three years."""
+
+
 def integer(low):
     """A rule: a whole number of at least `low`."""
     def rule(name, value, unit):
@@ -32,7 +54,7 @@ def integer(low):
 
 
 def numbers(each):
-    """A rule: numbers with commas between them, each after the rule `each`."""
+    """A rule: numbers with commas between them, each checked by the rule `each`."""
     def rule(name, value, unit):
         return ",".join(f"{each(name, word.strip(), unit):g}" for word in str(value).split(","))
     return rule
@@ -50,11 +72,15 @@ def flag(name, value, unit):
     return words[str(value).lower()]
 
 
-def choice(*options):
-    """A rule: one of these words."""
+def choice(*options, renamed=None):
+    """A rule: one of these words. renamed: {old word: the option that replaces it}."""
     def rule(name, value, unit):
-        require(str(value) in options, name, value, f"one of {', '.join(options)}")
-        return str(value)
+        word = str(value)
+        if word not in options and word in (renamed or {}):
+            raise ParameterError(name, word, f"given as {renamed[word]}, its name since {RENAMED_IN}")
+        require(word in options, name, word, f"one of {', '.join(options)}")
+        return word
+    rule.options = options
     return rule
 
 
@@ -64,13 +90,18 @@ def text(name, value, unit):
 
 
 def file(name, value, unit):
-    """A rule: the path of a file, or nothing; what is in it the scene looks at."""
+    """A rule: the path of a file, or nothing. The scene checks the contents."""
     return str(value)
 
 
 @dataclass(frozen=True)
 class Parameter:
-    """One number of a scene: its name, default, unit, rule, meaning, and where the default comes from."""
+    """One value that a user may give.
+
+    name, default, unit (SI; "" without one), rule, meaning, source: where the default comes from
+    when: {name of another parameter: (values,)}: used only where every other has one of these values. A condition on a
+    parameter that a scene does not declare is met.
+    """
 
     name: str
     default: Any
@@ -78,7 +109,80 @@ class Parameter:
     rule: Callable
     meaning: str
     source: str = "ours"
+    when: dict | None = None
 
     def check(self, value):
         """The value as the rule's type. Raises ParameterError."""
         return self.rule(self.name, value, self.unit)
+
+
+@dataclass(frozen=True)
+class Group:
+    """Parameters that belong together. Iterating gives each with the group's own `when` added to that of the parameter.
+
+    A parameter that the group's `when` asks for may be one of the group: it is used in any case.
+    """
+
+    title: str
+    parameters: tuple
+    when: dict | None = None
+
+    def __post_init__(self):
+        object.__setattr__(self, "parameters", tuple(self.parameters))
+
+    def __iter__(self):
+        for parameter in self.parameters:
+            if not self.when or parameter.name in self.when:
+                yield parameter
+            else:
+                yield replace(parameter, when={**self.when, **(parameter.when or {})})
+
+    def with_defaults(self, **defaults):
+        """The group with other defaults. Raises KeyError for a name that is not of the group."""
+        self._own(defaults)
+        return self._with(replace(p, default=defaults.get(p.name, p.default)) for p in self.parameters)
+
+    def without(self, *names):
+        """The group without these parameters. Raises KeyError for a name that is not of the group."""
+        self._own(names)
+        return self._with(p for p in self.parameters if p.name not in names)
+
+    def only(self, *names):
+        """The group with these parameters alone. Raises KeyError for a name that is not of the group."""
+        self._own(names)
+        return self._with(p for p in self.parameters if p.name in names)
+
+    def _own(self, names):
+        unknown = set(names) - {parameter.name for parameter in self.parameters}
+        if unknown:
+            raise KeyError(f"not in the group {self.title}: {', '.join(sorted(unknown))}")
+
+    def _with(self, parameters):
+        return replace(self, parameters=tuple(parameters))
+
+
+def unmet(parameter, values, declared):
+    """Name of the parameter whose value keeps `parameter` from being used; None where it is used.
+
+    values: {name: value}; declared: {name: Parameter}. A parameter that is not used itself meets no condition.
+    """
+    for name, allowed in (parameter.when or {}).items():
+        if name in declared and (values[name] not in allowed or unmet(declared[name], values, declared)):
+            return name
+    return None
+
+
+def law_parameters(registry, choice):
+    """Parameters of all laws in `registry`, {name: class with `parameters`}, each once.
+
+    choice: name of the parameter that chooses the law; `when` names it, where not every law has the parameter.
+    Raises ValueError where two laws declare one name differently.
+    """
+    found, laws = {}, {}
+    for law, kind in registry.items():
+        for parameter in kind.parameters:
+            if found.setdefault(parameter.name, parameter) != parameter:
+                raise ValueError(f"{parameter.name} of the law {law} differs from that of {laws[parameter.name][0]}")
+            laws.setdefault(parameter.name, []).append(law)
+    return tuple(p if len(laws[name]) == len(registry) else replace(p, when={**(p.when or {}), choice: tuple(laws[name])})
+                 for name, p in found.items())

@@ -19,7 +19,7 @@ from rockwear.run import checkpoint
 from rockwear.engines.base import RunEnded
 from rockwear.engines.recorder import write_table
 from rockwear.kernels.checks import ParameterError, require
-from rockwear.kernels.parameter import Parameter, above_zero, file, flag, text
+from rockwear.kernels.parameter import Group, Parameter, above_zero, file, flag, text
 
 COMMON = [
     Parameter("out", "", "", text, "folder of the results; out/SCENE when empty, a subfolder a row in a batch"),
@@ -42,6 +42,7 @@ def main(name, declared, make_scene):
     Exit code 0: done; 2: a parameter, a folder or a checkpoint that cannot be used, said in one line before the first
     step; 1: the run ended badly, said in one line, the last checkpoint kept; 128 + n: stopped by signal n, resumable.
     """
+    declared = [p for group in declared for p in (group if isinstance(group, Group) else [group])]
     names = {parameter.name for parameter in declared}
     declared = [*declared, *(parameter for parameter in COMMON if parameter.name not in names)]
     if "--help" in sys.argv:
