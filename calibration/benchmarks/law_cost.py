@@ -39,7 +39,7 @@ def stretches(values):
         softening = scene.bonds.softening()
         rows.append({"steps": scene.step - before, "wall": wall, "cpu": cpu, "stress": scene.stress,
                      "past_peak": float((softening > 0).mean()), "broken": float((softening == 1).mean()),
-                     "carried": len(scene.bonds.carried)})
+                     "softening_bonds": len(scene.bonds.softening_bonds)})
     return rows
 
 

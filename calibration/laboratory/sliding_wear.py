@@ -182,7 +182,7 @@ class SlidingWear(Scene):
 
     def canonical(self):
         self._fresh_bounds()
-        self.contact.look_around()
+        self.contact.find_contacts()
 
     def end_stage(self, folder):
         self.wear.act()

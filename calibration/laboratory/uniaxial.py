@@ -14,7 +14,8 @@ from rockwear.scenes import yade_scene
 from rockwear.scenes.scene import Scene
 from rockwear.run import vtk
 from rockwear.scenes import cutting
-from rockwear.engines.bonds import Bonds, Separation
+from rockwear.engines.bonds import Bonds
+from rockwear.engines.separation import Separation
 from rockwear.engines.rock_friction import RockFriction
 from rockwear.engines.velocity_increment import VelocityIncrement
 from rockwear.engines.failure import Failure

@@ -4,7 +4,7 @@ from yade import InteractionLoop, Law2_ScGeom_FrictViscoPhys_CundallStrackVisco,
 
 SLIDING = 1 - 1e-9
 """|Ft| / mu |Fn| from which a contact slid in this step: YADE's laws return it to Coulomb's limit to round-off. (A looser
-test takes contacts that only tremble near the limit for sliding, and their work piles up.)"""
+test counts contacts that oscillate near the limit as sliding, and their work adds up.)"""
 
 
 def yade_engine(kind):
@@ -22,17 +22,28 @@ def geometry_functor(kind):
     return next(functor for functor in yade_engine(InteractionLoop).geomDispatcher.functors if isinstance(functor, kind))
 
 
+def yade_friction_law():
+    """The contact law that sums up plastic dissipation."""
+    return law_functor(Law2_ScGeom_FrictViscoPhys_CundallStrackVisco)
+
+
 def collide_next_step():
     """Have the collider run in the very next step, as it does in a loaded scene.
 
-    Left to itself it would wait until some particle leaves its bounds, and contacts would be missed meanwhile. What
-    asks it to is a fastest velocity of zero.
+    Otherwise it waits until some particle leaves its bounds, and contacts are missed meanwhile. A fastest velocity of
+    zero makes it run.
     """
     yade_engine(NewtonIntegrator).maxVelocitySq = 0.0
 
 
+def body_erased(interaction):
+    """True if a body of the interaction has been erased; neither the interaction nor O.interactions tells."""
+    bodies = O.bodies
+    return bodies[interaction.id1] is None or bodies[interaction.id2] is None
+
+
 def overlap_of_spheres(interaction):
-    """Overlap (m) of two spheres as they lie; of other shapes, as YADE last found it."""
+    """Overlap (m) of two spheres at their present positions; of other shapes, as YADE last found it."""
     first, second = O.bodies[interaction.id1], O.bodies[interaction.id2]
     if not (isinstance(first.shape, Sphere) and isinstance(second.shape, Sphere)):
         return interaction.geom.penetrationDepth
@@ -41,10 +52,11 @@ def overlap_of_spheres(interaction):
 
 
 def contact_energy(interactions, overlap=overlap_of_spheres):
-    """Strain energy (J) of contacts that are no bonds, sum of kn un^2/2 + Ft^2/2kt; dashpots store none, nor do contacts
-    that have just opened: YADE drops them in the next step, and their tangential force with them.
+    """Strain energy (J) of contacts that are no bonds, sum of kn un^2/2 + Ft^2/2kt.
 
-    (YADE's own elasticEnergy() needs a step since the scene was loaded, and counts the dashpots' force as a spring's.)
+    Dashpots store none, nor do contacts that have just opened: YADE erases them in the next step, with their tangential
+    force. (YADE's own elasticEnergy() needs a step since the scene was loaded, and takes a dashpot's force for a
+    spring's.)
     """
     energy = 0.0
     for i in interactions:
@@ -52,8 +64,3 @@ def contact_energy(interactions, overlap=overlap_of_spheres):
         if depth > 0:
             energy += 0.5 * (i.phys.kn * depth**2 + i.phys.shearForce.squaredNorm() / i.phys.ks)
     return energy
-
-
-def yade_friction_law():
-    """The contact law that keeps YADE's account of friction."""
-    return law_functor(Law2_ScGeom_FrictViscoPhys_CundallStrackVisco)

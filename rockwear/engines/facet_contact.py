@@ -52,15 +52,15 @@ class FacetContact(ToolContact):
     def __init__(self, *, neighbours, needs=(WORK,), **common):
         super().__init__(needs=(*needs, SLIP), **common)
         self.neighbours = neighbours
-        self.in_yade_balance = self.born = 0.0
+        self.in_yade_balance = self.reshaping_energy = 0.0
         self.notches, self.reshaped = [], False
 
     def connect(self):
         super().connect()
         self.functor = yade_friction_law()
 
-    def look_around(self):
-        super().look_around()
+    def find_contacts(self):
+        super().find_contacts()
         groups = {}
         for contact in self.possible:
             groups.setdefault(contact[2], []).append(contact)
@@ -68,7 +68,7 @@ class FacetContact(ToolContact):
 
     def act(self):
         if self.collider.numAction != self.collided:
-            self.look_around()
+            self.find_contacts()
         fixed = self._energy(known=self.springs) if self.reshaped else 0.0
         self.notches = []
         successions = [pair for rock, group in self.shared for pair in self._judge(rock, group)]
@@ -79,7 +79,7 @@ class FacetContact(ToolContact):
         for old, new in successions:
             self._hand_over(old, new)
         if self.reshaped:
-            self.born += self._energy() - fixed
+            self.reshaping_energy += self._energy() - fixed
         self.reshaped = False
         self._note_springs()
 
@@ -176,7 +176,7 @@ class FacetContact(ToolContact):
         body = O.bodies[self.tool.body_of[contact[1]]]
         return abs(direction.dot(body.state.ori * body.shape.normal)) > FACE
 
-    def from_behind(self):
+    def contact_inside_tool(self):
         """Where (x, y, z in m) a particle that counts touches a facet inside its rim from within the tool, or None.
 
         YADE's facets have two sides. The normal of a contact runs from its first body to the second.
@@ -244,12 +244,12 @@ class FacetContact(ToolContact):
         return self._stored((i for body in self.tool.ids for i in O.interactions.withBody(body)), self.tool.meeting)
 
     def state(self):
-        return {**super().state(), "in_yade_balance": self.in_yade_balance, "born": self.born, "reshaped": self.reshaped,
+        return {**super().state(), "in_yade_balance": self.in_yade_balance, "reshaping_energy": self.reshaping_energy, "reshaped": self.reshaped,
                 "notches": np.array(self.notches, int).reshape(-1, 3)}
 
     def restore(self, state):
         super().restore(state)
-        self.in_yade_balance, self.born = float(state["in_yade_balance"]), float(state["born"])
+        self.in_yade_balance, self.reshaping_energy = float(state["in_yade_balance"]), float(state["reshaping_energy"])
         self.reshaped = bool(state["reshaped"])
         self.notches = [tuple(row) for row in state["notches"].tolist()]
 

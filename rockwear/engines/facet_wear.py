@@ -80,7 +80,7 @@ class FacetWear(WearEngine):
             raise self._too_fast(f"a facet of {1e3 * size[worst]:.3g} mm would recede by {1e3 * depth[worst]:.3g} mm at once")
 
     def _check_sides(self):
-        place = self.contact.from_behind()
+        place = self.contact.contact_inside_tool()
         if place is not None:
             raise self._too_fast(f"a rock particle has come to lie inside of it at {place}")
 

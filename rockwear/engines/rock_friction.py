@@ -3,19 +3,14 @@ import numpy as np
 
 from yade import InsertionSortCollider, JCFpmPhys, O
 
-from rockwear.engines.access import SLIDING, contact_energy, yade_engine, yade_friction_law
+from rockwear.engines.access import SLIDING, body_erased, contact_energy, yade_engine, yade_friction_law
 from rockwear.engines.base import FORCES, Engine
-from rockwear.engines.softening import _lost
 
 
-class RockFriction(Engine):
-    """Friction work between rock particles, and where it went.
+class RockContacts(Engine):
+    """Contacts between rock particles that are no bonds, and the friction energy dissipated there, `total` (J).
 
-    Contacts that slide are sampled at each visit: |Ft| times the irreversible slip (P 36), which is the slip less what
-    a rising limit mu |Fn| lets the spring take up. A force of one step works over the mean of the velocities before and
-    after it; to be visited before the integrator, which is foreseen. (YADE's own account of Coulomb contacts,
-    plasticDissipation, is not used: it takes the force after the slip for the mean, and forgets the shear spring of a
-    contact that parts. Where particles collide, each time for a few steps, a fifth of the work is missing there.)
+    bonds: engines.bonds.Bonds; motion: engines.velocity_increment.VelocityIncrement of the rock, bodies 0..n-1.
     """
 
     name = "rock_friction"
@@ -25,17 +20,15 @@ class RockFriction(Engine):
         super().__init__(period=period)
         self.bonds, self.motion = bonds, motion
         self.particles = len(motion.per_mass)
-        self.work = np.zeros(self.particles)
-        self.total = 0.0
 
     def connect(self):
         self.find_contacts()
 
     def find_contacts(self):
-        """Look for the contacts between rock particles that are no bonds, and for pairs that may come to touch before
-        the collider runs again or a bond is let go."""
+        """Find the contacts between rock particles that are no bonds, and the pairs that may touch before the collider
+        runs again or a broken bond is erased."""
         self.collider = yade_engine(InsertionSortCollider)
-        self.seen = self.collider.numAction, self.bonds.gone
+        self.seen = self.collider.numAction, self.bonds.separations
         found = [i for i in O.interactions.all() if max(i.id1, i.id2) < self.particles
                  and not isinstance(i.phys, JCFpmPhys)]
         # A loaded scene has them in another order.
@@ -43,12 +36,33 @@ class RockFriction(Engine):
 
     @property
     def contacts(self):
-        """The contacts that `find_contacts` found or has foreseen, as far as they are real now."""
+        """Those of the pairs that `find_contacts` found that are in contact now."""
         return [i for i in self.possible if i.isReal]
+
+    def elastic_energy(self):
+        """Strain energy (J) of the contacts between rock particles that are no bonds."""
+        self.find_contacts()
+        return contact_energy(self.contacts)
+
+
+class RockFriction(RockContacts):
+    """Friction work between rock particles, by particle, sampled at each visit.
+
+    A contact that slides dissipates |Ft| times the irreversible slip [Rojek 2014, eq. 36], which is the slip less what a
+    rising limit mu |Fn| lets the spring take up. The force of a step works over the mean of the velocities before and
+    after the integrator, whose change `motion` predicts. (YADE's sum of plastic dissipation is not used: it takes the
+    force after the slip for the mean force, and omits the shear spring of a contact that opens. Where particles
+    collide, each time for a few steps, it misses a fifth of the work.)
+    """
+
+    def __init__(self, **common):
+        super().__init__(**common)
+        self.work = np.zeros(self.particles)
+        self.total = 0.0
 
     def act(self):
         elapsed = self.elapsed()
-        if (self.collider.numAction, self.bonds.gone) != self.seen:
+        if (self.collider.numAction, self.bonds.separations) != self.seen:
             self.find_contacts()
         mu = self.bonds.law.mu
         for interaction, phys in self.bonds.broken.values():
@@ -61,7 +75,7 @@ class RockFriction(Engine):
 
     def _sample(self, interaction, phys, mu, elapsed):
         limit, tangential = mu * phys.normalForce.norm(), phys.shearForce.norm()
-        if not tangential > SLIDING * limit > 0.0 or _lost(interaction):
+        if not tangential > SLIDING * limit > 0.0 or body_erased(interaction):
             return
         normal = interaction.geom.normal
         velocity = interaction.geom.incidentVel(interaction, False) + 0.5 * self.motion.gain(interaction, normal)
@@ -77,11 +91,6 @@ class RockFriction(Engine):
         taken, self.work = self.work, np.zeros(self.particles)
         return taken
 
-    def elastic_energy(self):
-        """Strain energy (J) of the new contacts between rock particles."""
-        self.find_contacts()
-        return contact_energy(self.contacts)
-
     def state(self):
         return {"work": self.work.copy(), "total": self.total}
 
@@ -89,22 +98,28 @@ class RockFriction(Engine):
         self.work, self.total = state["work"].copy(), float(state["total"])
 
 
-class YadeFriction(RockFriction):
-    """RockFriction that nobody visits: YADE's account, less the tool's part of it.
+class YadeFriction(RockContacts):
+    """YADE's sum of plastic dissipation, less the tool's part of it; nothing is sampled.
 
-    That is enough where contacts last long against a step, and nobody asks which particles their friction went to.
-    contact: the FacetContact, restored before.
+    That is exact enough where contacts last long against a step. It does not tell which particles dissipate.
+    contact: the FacetContact of the tool.
     """
 
-    def __init__(self, *, contact, **common):
+    def __init__(self, *, contact, period=None, **common):
+        super().__init__(period=period, **common)
         self.contact = contact
-        super().__init__(**common)
+
+    def act(self):
+        self.find_contacts()
 
     @property
     def total(self):
         """J so far."""
         return yade_friction_law().plasticDissipation() - self.contact.in_yade_balance
 
-    @total.setter
-    def total(self, value):
-        yade_friction_law().initPlasticDissipation(value + self.contact.in_yade_balance)
+    def state(self):
+        # YADE does not save it.
+        return {"plastic_dissipation": yade_friction_law().plasticDissipation()}
+
+    def restore(self, state):
+        yade_friction_law().initPlasticDissipation(float(state["plastic_dissipation"]))

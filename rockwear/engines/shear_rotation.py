@@ -13,7 +13,7 @@ LOOKING_PERIOD = 100
 """Steps between looks for such bonds."""
 
 
-class Turning(Engine):
+class ShearRotation(Engine):
     """Corrects YADE's shear rule where bonds turn fast (kernels.turning): chips that angular_velocity would gain energy.
 
     bonds: engines.bonds.Bonds, in space and with shear that follows the points of contact; radii: (n,) m of the bodies

@@ -25,7 +25,7 @@ class ToolContact(Engine):
 
     name = "tool_contact"
     phase = FORCES
-    born = 0.0
+    reshaping_energy = 0.0
     """J with which contacts have begun that no work was done for."""
 
     def __init__(self, *, tool, motion, needs=(WORK,), sampling_period=1, period=1):
@@ -40,10 +40,10 @@ class ToolContact(Engine):
         self.impulse = np.zeros(3)
 
     def connect(self):
-        self.look_around()
+        self.find_contacts()
         self._note_springs()
 
-    def look_around(self):
+    def find_contacts(self):
         """Note the contacts that the collider holds possible now."""
         self.collider = yade_engine(InsertionSortCollider)
         self.collided = self.collider.numAction
@@ -59,7 +59,7 @@ class ToolContact(Engine):
 
     def act(self):
         if self.collider.numAction != self.collided:
-            self.look_around()
+            self.find_contacts()
         if O.iter % self.sampling_period == 0:
             self._sample_all()
         if (O.iter + 1) % self.sampling_period == 0:

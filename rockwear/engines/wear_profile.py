@@ -19,9 +19,9 @@ class WearProfile(Engine):
     def __init__(self, *, wear, place, period=1):
         super().__init__(period=period)
         self.wear, self.place, self.places = wear, place, int(place.max()) + 1
-        self.forget()
+        self.clear()
 
-    def forget(self):
+    def clear(self):
         """Begin a record of nothing."""
         self.increments, self.booked = [], np.zeros(self.places)
         self.span = self.cycle = 0

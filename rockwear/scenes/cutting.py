@@ -11,7 +11,8 @@ from rockwear.scenes import yade_scene
 from rockwear.scenes.scene import Scene
 from rockwear.scenes.tool_bodies import ToolBodies
 from rockwear.run import vtk
-from rockwear.engines.bonds import Bonds, Crack, Separation
+from rockwear.engines.bonds import Bonds, Crack
+from rockwear.engines.separation import Separation
 from rockwear.engines.rock_friction import RockFriction
 from rockwear.engines.expansion import Expansion
 from rockwear.engines.heat import Heat
@@ -420,7 +421,7 @@ class Cutting(Scene):
 
     def canonical(self):
         super().canonical()
-        self.contact.look_around()
+        self.contact.find_contacts()
 
     def end_stage(self, folder):
         """Close the stage's balances; before each further cycle put back the rock as the start-up left it."""
@@ -545,7 +546,7 @@ class Cutting(Scene):
         balance["contact_dashpots"] = self.contact.dashpot_dissipated
         balance["bond_breaking"] = self.bonds.energy_released
         balance["background_damping"] = self.damping.dissipated if self.damping else 0.0
-        balance["removed_contacts"] = self.wear.contact_energy_removed - self.contact.born
+        balance["removed_contacts"] = self.wear.contact_energy_removed - self.contact.reshaping_energy
         if self.expansion:
             balance["thermal_expansion"] = -self.expansion.work
         balance["residual"] = balance["tool_work"] - math.fsum(list(balance.values())[1:])

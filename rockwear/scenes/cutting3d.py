@@ -13,14 +13,15 @@ from rockwear.scenes.tool_bodies import SphereBodies
 from rockwear.run import vtk
 from rockwear.scenes import cutting
 from rockwear.scenes.cutting import Cutting
-from rockwear.engines.bonds import Bonds, Separation
+from rockwear.engines.bonds import Bonds
+from rockwear.engines.separation import Separation
 from rockwear.engines.rock_friction import RockFriction
 from rockwear.engines.rock_friction import YadeFriction
 from rockwear.engines.damping import BackgroundDamping
 from rockwear.engines.velocity_increment import VelocityIncrement
 from rockwear.engines.energy_guard import EnergyGuard
 from rockwear.engines.recorder import Recorder
-from rockwear.engines.shear_rotation import Turning
+from rockwear.engines.shear_rotation import ShearRotation
 from rockwear.engines.tool_contact import ToolContact
 from rockwear.engines.wear import Wear
 from rockwear.scenes.facet_cutting import FacetCutting, check_sampling
@@ -208,7 +209,7 @@ class Cutting3D(Cutting):
         pull = float(rock.masses.sum()) * v.gravity * v.radius
         self.watch = EnergyGuard(work=lambda: self.contact.work_done,
                            floor=25 * float(rock.masses.max()) * max(v.velocity, v.lowering_velocity)**2 + pull)
-        turning = Turning(bonds=self.bonds, radii=rock.radii) if len(rock.pairs) else None
+        turning = ShearRotation(bonds=self.bonds, radii=rock.radii) if len(rock.pairs) else None
         self._register(turning, self.bonds, self.contact, self.rock_friction, Separation(self.bonds), self.wear, self.profile, self.damping,
                      self.recorder, self.watch)
 

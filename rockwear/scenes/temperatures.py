@@ -100,7 +100,7 @@ class Temperatures(Cutting):
         # What is said of the wear is said of this tool alone.
         self.wear.events[:] = 0
         if self.profile:
-            self.profile.forget()
+            self.profile.clear()
         cold = np.full(self.tool.count, self.v.tool_temperature)
         self.heat.renew_tool(self.field(velocity, shank) if shank else cold)
 

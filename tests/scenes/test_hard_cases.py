@@ -47,12 +47,12 @@ def test_discs_erased_while_their_bonds_soften_and_break(checks):
         assert found["erased"] == 12 and found["all gone"] and found["left over"] == 0
         assert found["seen"]["broken"] > 0 and abs(found["residual"]) < 2e-3
         if law != "brittle":
-            assert found["seen"]["carried"] > 0 and found["seen"]["resting"] > 0 and found["others alive"] > 20
+            assert found["seen"]["softening_bonds"] > 0 and found["seen"]["returned"] > 0 and found["others alive"] > 20
 
 
 def test_a_bond_cycled_around_its_peak_follows_its_law(checks):
     assert max(found["deviation"] for found in checks["cycled"].values()) < 1e-13
-    assert checks["cycled"]["damage"]["rests"] > 50 and checks["cycled"]["plastic"]["rests"] > 5
+    assert checks["cycled"]["damage"]["returns"] > 50 and checks["cycled"]["plastic"]["returns"] > 5
     assert checks["cycled without new normals"] > 0.01
 
 

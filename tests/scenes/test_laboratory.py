@@ -111,7 +111,7 @@ def test_softening_bonds_stopped_past_their_peak_and_resumed_equal_never_stopped
     assert stopped.code == 128 + signal.SIGTERM
     current = json.loads((out / "checkpoint/current.json").read_text(encoding="utf-8"))
     with np.load(out / "checkpoint" / str(current["set"]) / "state.npz") as state:
-        softened = [len(state[f"scene/engines/bonds/{group}"]) for group in ("carried", "resting")]
+        softened = [len(state[f"scene/engines/bonds/{group}"]) for group in ("softening_bonds", "returned")]
         assert sum(softened) > 3
     resumed = laboratory(out, "--resume", **options)
     assert resumed.code == 0, resumed.stderr

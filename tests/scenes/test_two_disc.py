@@ -37,7 +37,7 @@ def test_forces_turn_with_the_pair(checks):
 
 def test_after_breakage_yade_alone_gives_a_coulomb_contact(checks):
     for found in checks["coulomb"].values():
-        assert found["carried"] == 0 and found["slides"] > 100 and found["deviation"] < 1e-12
+        assert found["softening_bonds"] == 0 and found["slides"] > 100 and found["deviation"] < 1e-12
 
 
 def test_work_until_a_bond_is_gone_is_that_of_the_triangle(checks):

@@ -114,11 +114,11 @@ if in_space:
     seen = [max(i.geom.penetrationDepth for i in O.interactions.withBody(number)) for number in range(count)]
     found.update(overlaps=depths, seen=seen, at_rest=max(abs(O.forces.f(number)[1]) for number in range(count)) / FORCE,
                  heights=[float(O.bodies[number].state.pos[1] + RADIUS) for number in range(count)])
-found["outside"] = contact.from_behind()
+found["outside"] = contact.contact_inside_tool()
 wear.reshape = False
 for number in range(count):
     # Half a radius inside the tool.
     O.bodies[number].state.pos += (0, 1.5 * RADIUS, 0)
 run(1)
-found["inside"] = contact.from_behind()
+found["inside"] = contact.contact_inside_tool()
 print(json.dumps(found))

@@ -15,10 +15,12 @@ from yade import O, utils
 
 from rockwear.engines import base
 from rockwear.scenes import yade_scene
-from rockwear.engines.bonds import BROKEN, SEPARATED, INTACT, Bonds, Separation
+from rockwear.engines.bonds import BROKEN, SEPARATED, INTACT, Bonds
+from rockwear.engines.bonding_normals import BondingNormals
+from rockwear.engines.separation import Separation
 from rockwear.engines.rock_friction import RockFriction
 from rockwear.engines.velocity_increment import VelocityIncrement
-from rockwear.engines.shear_rotation import Turning
+from rockwear.engines.shear_rotation import ShearRotation
 from rockwear.kernels.bond_laws import ElasticBrittle, ElasticDamage, ElastoPlasticSoftening
 from rockwear.kernels.packing import contacts
 from rockwear.scenes.two_disc import lead
@@ -135,7 +137,7 @@ def erased(law):
     middle = ROWS // 2 * COLUMNS
     at = {step: [disc] for step, disc in zip(range(20, 20 * 12, 20), range(middle, middle + 11))}
     bonds, energy = moving_lattice(law, RATE * RN / KN / (2 * RADIUS * TIME_STEP) * (SHEAR + 0.2 * TEAR), Eraser(at))
-    seen = {"carried": 0, "resting": 0, "broken": 0}
+    seen = {"softening_bonds": 0, "returned": 0, "broken": 0}
     for step in range(240):
         fixed = {name: set(getattr(bonds, name)) for name in seen}
         discs = set(range(len(O.bodies))) - {body.id for body in O.bodies if body}
@@ -154,33 +156,33 @@ def erased(law):
             "others alive": int((bonds.status[~touching] == INTACT).sum()), "cracks": len(bonds.cracks),
             "broken": int((bonds.status == BROKEN).sum()), "residual": (energy() - before) / before,
             "left over": sum(n in group for n in np.flatnonzero(touching) for group in
-                             (bonds.intact, bonds.carried, bonds.resting, bonds.broken))}
+                             (bonds.elastic, bonds.softening_bonds, bonds.returned, bonds.broken))}
 
 
 def cycled(law, seed=4, legs=60):
     """A bond led to and fro around its peak: deviation from the law, and how often YADE's law took it back."""
     rng = np.random.default_rng(seed)
-    rests = [0]
-    rest = Bonds._rest
+    returns = [0]
+    return_to_yade = Bonds._return_to_yade
 
-    def counting(self, n, carried):
-        rests[0] += 1
-        rest(self, n, carried)
+    def counting(self, n, softening):
+        returns[0] += 1
+        return_to_yade(self, n, softening)
 
     corners = rng.uniform([-0.3, -1.5], [1.0, 1.5], (legs, 2)) * np.linspace(0.6, 1.6, legs)[:, None]
     corners = np.vstack([[0.0, 0.0], corners]) * [law.Rn / law.kn, law.Rt / law.kt]
     path = np.vstack([a + (b - a) * np.linspace(0, 1, 30, endpoint=False)[:, None]
                       for a, b in zip(corners, corners[1:])])
-    with mock.patch.object(Bonds, "_rest", counting):
+    with mock.patch.object(Bonds, "_return_to_yade", counting):
         response = lead(law, *path.T, radii=(1e-3, 1.6e-3))
     Fn, Ft = law.drive(response.un, response.ut[:, 0])
     deviation = max(abs(Fn - response.Fn).max(), abs(Ft - response.Ft[:, 0]).max()) / max(law.Rn, law.Rt)
-    return {"deviation": float(deviation), "rests": rests[0]}
+    return {"deviation": float(deviation), "returns": returns[0]}
 
 
 def cycled_without_new_normals():
-    """The same, the engine broken on purpose: after a rest the shear force is found as if nothing had slipped."""
-    with mock.patch.object(Bonds, "_bond_anew", lambda self, n, interaction: None):
+    """The same, the engine broken on purpose: after a return to YADE's law the shear force is found as if nothing had slipped."""
+    with mock.patch.object(BondingNormals, "set_elastic", lambda self, n, interaction: None):
         return cycled(LAWS["plastic"])["deviation"]
 
 
@@ -247,7 +249,7 @@ def spinning(corrected):
     for body, place in zip(O.bodies, places):
         body.state.vel = tuple(np.cross(angular_velocity, place) + chance.normal(0, 0.5, 3))
         body.state.angVel = tuple(angular_velocity + chance.normal(0, 20, 3))
-    turning = Turning(bonds=bonds, radii=rock.radii)
+    turning = ShearRotation(bonds=bonds, radii=rock.radii)
     base.register([turning, bonds])
     first = base.runners({"shear_rotation": 1}) if corrected else []
     O.engines = first + O.engines[:-1] + base.runners({"bonds": 1}) + O.engines[-1:]

@@ -57,4 +57,4 @@ for _ in range(1000):
     gained.append(energy() - first)
     places.append(O.bodies[0].state.pos[0])
 print(json.dumps({"gained": float(np.abs(gained).max()), "in_the_spring": 0.5 * LOAD**2 / KN, "aside": float(np.abs(places).max()),
-                  "crossings": int(np.sum(np.diff(np.sign(places)) != 0)), "born": contact.born}))
+                  "crossings": int(np.sum(np.diff(np.sign(places)) != 0)), "reshaping_energy": contact.reshaping_energy}))

@@ -8,6 +8,7 @@ import numpy as np
 from yade import O, Vector3, utils
 
 from rockwear.engines import base
+from rockwear.engines.bonding_normals import BondingNormals
 from rockwear.engines.bonds import Bonds
 from rockwear.engines.softening import SofteningBond
 from rockwear.kernels.bond_laws import (
@@ -115,7 +116,7 @@ def coulomb_afterwards(law):
         before, limit = response.ut[k], law.mu * abs(Fn[k])
         Ft = Ft * min(1.0, limit / (np.linalg.norm(Ft) or 1.0))
         worst = max(worst, abs(response.Fn[k] - Fn[k]), abs(response.Ft[k] - Ft).max())
-    return {"deviation": float(worst / law.Rn), "carried": len(response.bonds.carried), "slides": int(np.sum(Fn < 0))}
+    return {"deviation": float(worst / law.Rn), "softening_bonds": len(response.bonds.softening_bonds), "slides": int(np.sum(Fn < 0))}
 
 
 def work_until_gone(law):
@@ -189,24 +190,24 @@ def broken_on_purpose():
         return Vector3.Zero
 
     def a_step_late(self):
-        for n, carried in list(self.carried.items()):
-            spent = carried.advance(carried.trial(), O.forces)
-            if spent is not None:
-                self._book(n, carried, spent)
-        tripped = [n for n, (_, phys) in self.intact.items() if not phys.isCohesive]
-        for n in [n for n in tripped if getattr(self, "seen", None) == n]:
-            self._trip(n)
-        self.seen = tripped[0] if tripped else None
+        for n, softening in list(self.softening_bonds.items()):
+            dissipated = softening.advance(softening.trial(), O.forces)
+            if dissipated is not None:
+                self._dissipate(n, softening, dissipated)
+        yielded = [n for n, (_, phys) in self.elastic.items() if not phys.isCohesive]
+        for n in [n for n in yielded if getattr(self, "seen", None) == n]:
+            self._yield(n)
+        self.seen = yielded[0] if yielded else None
 
     def no_friction(self):
-        hand_over(self)
+        convert(self)
         self.phys.tanFrictionAngle = 0.0
 
-    hand_over, law = SofteningBond.hand_over, LAWS["damage"]
-    patches = {"nothing carried": mock.patch.object(SofteningBond, "advance", lambda self, ut, forces: None),
-               "shear forgotten": mock.patch.object(Bonds, "_shear_displacement", no_shear),
+    convert, law = SofteningBond.convert_to_friction, LAWS["damage"]
+    patches = {"no force from Python": mock.patch.object(SofteningBond, "advance", lambda self, ut, forces: None),
+               "shear forgotten": mock.patch.object(BondingNormals, "shear_displacement", no_shear),
                "a step late": mock.patch.object(Bonds, "act", a_step_late),
-               "no friction": mock.patch.object(SofteningBond, "hand_over", no_friction)}
+               "no friction": mock.patch.object(SofteningBond, "convert_to_friction", no_friction)}
     ut = np.linspace(0.0, 30e-6, 203)
     found = {}
     for name, patch in patches.items():
