@@ -9,10 +9,10 @@ RESOLUTION = 1e-12
 
 
 class Expansion(Engine):
-    """Radii r = r0 (1 + alpha (theta - theta0)) (P 11), for bodies 0..n-1.
+    """Radii r = r0 (1 + alpha (theta - theta0)) ([Rojek 2014, eq. 11]), for bodies 0..n-1.
 
     A bond takes up expansion as it would a displacement. Its length at rest, |x_j - x_i| at bonding, grows in the
-    proportion of r_i + r_j. (P 10 lets it grow by r_i + r_j and keeps the packing's gap g0, so that bonds with overlaps
+    proportion of r_i + r_j. ([Rojek 2014, eq. 10] lets it grow by r_i + r_j and keeps the packing's gap g0, so that bonds with overlaps
     and bonds with gaps grow unlike each other, and a packing that is heated evenly comes under stress of its own. Here
     it does not; where discs touch the two are the same.) A broken bond keeps its length at rest, that is, the distance
     at which it presses again. Other contacts see the radii. Masses stay: density falls. Bounding boxes follow when the

@@ -11,10 +11,10 @@ from rockwear.kernels.voronoi import among, conducting
 class Heat(Engine):
     """One HeatNetwork over rock particles (nodes 0..n-1) and tool particles (n..n+m-1), staggered with the mechanics.
 
-    Friction heat chi W is shared between tool and rock, W being the work of irreversible slip (P 36-41); between rock
-    particles in halves. A tool and a rock particle that touch exchange h A (T_tool - T_rock) (P 66) for the seconds
+    Friction heat chi W is shared between tool and rock, W being the work of irreversible slip ([Rojek 2014, eqs. 36-41]); between rock
+    particles in halves. A tool and a rock particle that touch exchange h A (T_tool - T_rock) ([Rojek 2014, eq. 66]) for the seconds
     they touched, A = 2 r b of the tool particle, as the exact exchange of the two lumps, which cannot overshoot.
-    Convection acts on the free surface (P 42), found anew when bonds have broken or particles have gone.
+    Convection acts on the free surface ([Rojek 2014, eq. 42]), found anew when bonds have broken or particles have gone.
 
     network: kernels.conduction.HeatNetwork; bonds, rock_friction, tool_contact: engines; rock, tool: the specimen and
     the tool; tool_share: part of the heat of tool-rock friction that the tool takes; rock_paths,
@@ -23,7 +23,7 @@ class Heat(Engine):
     acceleration: of the wear; a particle that it wears away takes 1 / acceleration of its heat along, the rest stays with
     those under it (kernels.receding);
     shank_temperature: K at which the shank holds the tool's fixed particles, None where they are insulated;
-    time_scale: a function giving the seconds of the process in a second of the mechanics (M 12.1), in which heat flows.
+    time_scale: a function giving the seconds of the process in a second of the mechanics ([Rojek 2003, 12.1]), in which heat flows.
     """
 
     name = "heat"

@@ -1,7 +1,7 @@
-"""Exact solutions of heat conduction, the yardsticks of the thermal model.
+"""Exact solutions of heat conduction, to which the thermal model is compared.
 
-They answer the benchmarks M 7.6.1-7.6.3, whose material and source are to be given in one consistent set of units
-(SI here, but any set serves). Temperatures are rises above the initial one. Formulas after Carslaw and Jaeger,
+They are those of the benchmarks [Rojek 2003, 7.6.1-7.6.3]; material and load are to be given in one consistent set of
+units (SI here, but any set serves). Temperatures are rises above the initial one. Formulas after Carslaw and Jaeger,
 Conduction of Heat in Solids. Numbers out of range raise ParameterError.
 """
 import numpy as np
@@ -10,17 +10,17 @@ from scipy.special import erfc
 from rockwear.kernels.checks import not_negative, positive, require
 
 _TERMS = np.arange(1, 402, 2)  # odd numbers of the sine series
-_EARLY = 0.05  # Fourier number below which images settle faster than the sine series
+_EARLY = 0.05  # Fourier number below which the images converge faster than the sine series
 
 
 def diffusivity(conductivity, density, specific_heat):
-    """a = lambda/(rho*c), m^2/s (P eq. 58); W/(m K), kg/m^3, J/(kg K), each greater than 0."""
+    """a = lambda/(rho*c), m^2/s [Rojek 2014, eq. 58]; W/(m K), kg/m^3, J/(kg K), each greater than 0."""
     return (positive("conductivity", conductivity, "W/(m K)") / positive("density", density, "kg/m^3")
             / positive("specific_heat", specific_heat, "J/(kg K)"))
 
 
 def heated_slab(x, t, *, thickness, conductivity, density, specific_heat, power):
-    """Slab heated evenly inside, its faces x = 0 and x = L held at the initial temperature (M 7.6.1), K.
+    """Slab heated evenly inside, its faces x = 0 and x = L held at the initial temperature [Rojek 2003, 7.6.1], K.
 
         T = q/(2 lambda) x (L - x) - sum_{n odd} 4 q L^2/(lambda (n pi)^3) sin(n pi x/L) exp(-(n pi)^2 a t/L^2)
 
@@ -38,7 +38,7 @@ def heated_slab(x, t, *, thickness, conductivity, density, specific_heat, power)
 
 
 def half_space_under_flux(x, t, *, flux, conductivity, density, specific_heat):
-    """Half-space x >= 0 under a constant flux q through its face from t = 0 on (M 7.6.2), K.
+    """Half-space x >= 0 under a constant flux q through its face from t = 0 on [Rojek 2003, 7.6.2], K.
 
         T = 2 q sqrt(t/(lambda rho c)) ierfc(x/(2 sqrt(a t))),   ierfc(z) = exp(-z^2)/sqrt(pi) - z erfc(z)
 
@@ -52,7 +52,7 @@ def half_space_under_flux(x, t, *, flux, conductivity, density, specific_heat):
 
 
 def slab_with_jumping_faces(x, t, *, thickness, conductivity, density, specific_heat, jump):
-    """Slab whose faces x = 0 and x = L rise by `jump`, K, at t = 0 and stay there (M 7.6.3), K.
+    """Slab whose faces x = 0 and x = L rise by `jump`, K, at t = 0 and stay there [Rojek 2003, 7.6.3], K.
 
         T/jump = 1 - sum_{n odd} 4/(n pi) sin(n pi x/L) exp(-(n pi)^2 a t/L^2)
                = sum_{k >= 0} (-1)^k [erfc((k L + x)/(2 sqrt(a t))) + erfc((k L + L - x)/(2 sqrt(a t)))]
@@ -73,7 +73,7 @@ def slab_with_jumping_faces(x, t, *, thickness, conductivity, density, specific_
 
 
 def two_nodes(t, *, capacities, conductance, temperatures):
-    """Two particles exchanging heat through one contact: their temperatures, K, shape of t plus (2,).
+    """Temperatures of two particles that exchange heat through one contact, K, shape of t plus (2,).
 
         T = Tm + (T0 - Tm) exp(-H (1/C1 + 1/C2) t),   Tm = (C1 T1 + C2 T2)/(C1 + C2)
 
@@ -87,7 +87,7 @@ def two_nodes(t, *, capacities, conductance, temperatures):
 
 
 def rod_decay_rate(*, length, diffusivity, mode=1):
-    """Rate at which sin(n pi x/L) dies away in a rod with cold ends (cos: insulated ends), a (n pi/L)^2, 1/s.
+    """Rate at which sin(n pi x/L) decays in a rod with cold ends (cos: insulated ends), a (n pi/L)^2, 1/s.
 
     length  m;  diffusivity  m^2/s;  mode  n = 1, 2, ...
     """

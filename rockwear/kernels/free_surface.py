@@ -1,6 +1,6 @@
 """Free surface of an assembly of particles, found from positions and radii alone, in 2D and 3D.
 
-M 7.2 asks for an automatic procedure that follows cracks, chips and wear, as convection acts on the free surface.
+Convection acts on the free surface; [Rojek 2003, 7.2] asks for a procedure that follows cracks, chips and wear.
 """
 import math
 
@@ -23,14 +23,14 @@ def free_surface(*, positions, radii, alpha=ALPHA, in_contact=None):
 
     positions   (n, 2) or (n, 3) centres, m
     radii       (n,) m, greater than 0
-    alpha       size of the gaps that are closed, in mean radii of the particles around them, greater than 1. A crack
-                is free surface once its walls stand 2 (alpha - 1) radii apart (1.2 diameters at 2.2). A hole or a pore
-                is free surface once a way as wide approach_steps to it from outside: what is enclosed meets no air or water.
+    alpha       largest gap that counts as closed, in mean radii of the particles around it, greater than 1. A crack
+                is free surface once its walls are 2 (alpha - 1) radii apart (1.2 diameters at 2.2). A hole or a pore
+                is free surface once a channel as wide connects it with the outside: air or water reach no other.
     in_contact  (n,) bool, particles touching another body: they are on the contact interface and not on the free
-                surface (M 7.2), their share is 0
+                surface [Rojek 2003, 7.2], their share is 0
 
-    The alpha complex of the centres (Edelsbrunner and Muecke 1994) is the body; its surface is that of the body
-    blown up by the radii, with every simplex bringing its part to its own particles (Steiner's formula):
+    The alpha complex of the centres (Edelsbrunner and Muecke 1994) is the body; the free surface is that of the body
+    dilated by the radii, each simplex contributing to its own particles (Steiner's formula):
 
         2D   L_i = sum_edges l/2 + r_i phi_i
         3D   A_i = sum_faces A/3 + r_i sum_edges (l/2) phi_e + r_i^2 K_i
@@ -40,8 +40,8 @@ def free_surface(*, positions, radii, alpha=ALPHA, in_contact=None):
     single particle 2 pi r or 4 pi r^2; a right-angled corner is round and (2 - pi/2) r shorter than a sharp one.
     Particles inside have 0; none has more than its whole circumference or area.
 
-    The sum is L_bound of P eq. 44. P eq. 43 shares it out by radius alone, xi*r_i; here each particle has what is
-    exposed at its own place. Raises ParameterError.
+    The sum is L_bound of [Rojek 2014, eq. 44]. There eq. 43 distributes it by radius alone, xi*r_i; here each particle
+    has what is exposed at its own place. Raises ParameterError.
     """
     positions, radii = np.asarray(positions, float), np.asarray(radii, float)
     require(positions.ndim == 2 and positions.shape[1] in (2, 3) and len(positions) > 0, "positions",
@@ -112,8 +112,8 @@ def _alpha_complex(positions, radii, alpha):
     many free sides as simplices of full dimension are missing beside it.
     """
     n, dimension = positions.shape
-    # Ghosts far off stand around the particles: there is no hull to treat apart, and one particle, a chain or a
-    # layer has a triangulation as well.
+    # Ghost points far off surround the particles: the hull is no special case, and one particle, a chain or a layer
+    # has a triangulation as well.
     middle = (positions.min(axis=0) + positions.max(axis=0)) / 2
     reach = np.ptp(positions, axis=0).max() + alpha * radii.max()
     corners = np.vstack([np.eye(dimension), -np.ones((1, dimension))])
@@ -143,7 +143,7 @@ def _alpha_complex(positions, radii, alpha):
 
 
 def _enclosed(points, triangulation, belongs, n, reach):
-    """Simplices of pores that no way approach_steps to from outside, through gaps wider than `reach` (by particle) closes."""
+    """Simplices of pores that are connected with the outside by no channel wider than `reach` (one per particle)."""
     empty, beside = np.flatnonzero(~belongs), triangulation.neighbors
     own, across = (a.ravel() for a in np.broadcast_arrays(empty[:, None], beside[empty]))
     facets = np.concatenate([np.delete(triangulation.simplices[empty], k, axis=1)[:, None]

@@ -1,46 +1,46 @@
-"""The temperature field of a surface that recedes faster than it should: wear that is accelerated takes no more heat.
+"""The temperature field below a surface whose wear is accelerated: accelerated wear takes no more heat than real wear.
 
-A body worn A times too fast loses A times the volume, and with it A times the heat that wear would take. What leaves with
-1 - 1/A of the worn volume is an artefact: over the same heating time the real surface stays where it is, and so does the
-field below it. In the frame of the receding surface the field is therefore moved inwards with it.
+Wear that is accelerated A times removes A times the volume, and with it A times the heat that wear would take. What
+leaves with 1 - 1/A of the worn volume is an artefact: in the same heating time the real surface stays where it is, and
+so does the field below it. In the frame of the receding surface the field is therefore moved inwards with it.
 """
 import numpy as np
 from scipy.sparse import coo_array
 
 SPENT = 1e-12
-"""Part of a particle's heat that is not worth another layer."""
+"""Part of a particle's heat below which no further layer is looked at."""
 
 
 def neighbours(pairs, count):
-    """The pairs (m, 2) of `count` particles as a sparse matrix, a row a particle."""
+    """The pairs (m, 2) of `count` particles as a sparse adjacency matrix."""
     both = np.concatenate([pairs, np.asarray(pairs)[:, ::-1]])
     return coo_array((np.ones(len(both)), both.T), shape=(count, count)).tocsr()
 
 
 def receded(*, temperature, capacity, adjacent, leaving, share):
-    """Temperatures (n,) K after the particles `leaving` have handed `share` of their heat to those under them.
+    """Temperatures (n,) K after the particles `leaving` have given `share` of their heat to those below them.
 
-    One after another, in the order given. The neighbours of one that leaves take its temperature, theirs go to the
+    One after another, in the order given. The neighbours of a leaving particle take its temperature, theirs goes to the
     layer behind them, and so on inwards: on a chain the field moves by one particle for `share` = 1. No layer becomes
-    hotter than what was before it (of several neighbours there, the coldest), and the heat handed over is at most what
-    the leaving one holds above the coldest particle: where neighbouring columns share what is under them the first
-    layers are served first, so that heat and the surface's temperature are kept, and the profile behind is steeper than
-    the one that was, until conduction has evened it.
+    hotter than the one in front of it was (of several neighbours there, the coldest), and the heat given is at most
+    what the leaving particle holds above the coldest one. Where neighbouring columns share the particles below, the first
+    layers are served first: heat and surface temperature are kept, and the profile behind is steeper than it was, until
+    conduction has evened it out.
 
-    temperature (n,) K; capacity (n,) J/K, 0 for particles that have gone before; adjacent: of `neighbours`. The sum of
-    capacity * temperature stays.
+    temperature (n,) K; capacity (n,) J/K, 0 for particles that are gone; adjacent: by `neighbours`. The sum of
+    capacity * temperature is kept.
     """
     temperature, there = np.array(temperature, float), np.asarray(capacity) > 0
     for one in leaving:
         there[one] = False
         if there.any():
-            handed = _hand_inwards(temperature, capacity, adjacent, one, there, share)
-            temperature[one] -= handed / capacity[one]
+            given = _move_inwards(temperature, capacity, adjacent, one, there, share)
+            temperature[one] -= given / capacity[one]
     return temperature
 
 
-def _hand_inwards(temperature, capacity, adjacent, one, there, share):
-    """Raise `temperature` behind particle `one`, layer by layer. -> J handed over."""
+def _move_inwards(temperature, capacity, adjacent, one, there, share):
+    """Raise `temperature` behind particle `one`, layer by layer. -> J transferred."""
     budget = left = share * capacity[one] * (temperature[one] - temperature[there].min())
     before, unseen, layer = temperature.copy(), there.copy(), np.array([one])
     while left > SPENT * abs(budget):

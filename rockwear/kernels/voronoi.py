@@ -1,13 +1,13 @@
-"""The cells of particles: what part of a body each stands for, and the faces through which neighbours exchange heat.
+"""Voronoi cells of particles: the part of a body that each represents, and the faces through which heat is conducted.
 
-A packing is a sample of the body that it fills, and its particles' Voronoi cells divide that body without gap and
+A packing is a sample of the body that it fills, and the Voronoi cells of its particles divide that body without gap and
 overlap. Heat between the centres of neighbours passes the face between their cells:
 
     h_ij = lambda A_ij / d_ij
 
-which is M eq. 7.3 with its "equivalent area" found instead of guessed. As every cell is closed, sum_j A_ij n_ij is 0
-over its faces, and a linear temperature is exactly steady on any packing: the network conducts as the material does,
-in every direction and at every place, with nothing to be fitted (a finite volume scheme, second order in the spacing).
+which is [Rojek 2003, eq. 7.3] with the face as "equivalent area". As every cell is closed, sum_j A_ij n_ij is 0 over
+its faces, and a linear temperature is exactly stationary on any packing: the network conducts as the material does, in
+every direction and at every place, without any fit (a finite volume scheme of second order in the spacing).
 """
 from dataclasses import dataclass
 
@@ -15,11 +15,11 @@ import numpy as np
 from scipy.sparse import csr_matrix
 from scipy.spatial import Voronoi, cKDTree
 
-from rockwear.kernels import polygon as outline
 from rockwear.kernels.checks import positive, require
+from rockwear.kernels.polygon import check_polygon, inside, nearest_on_edges, sides
 
-REACH = 3  # largest distance between nearest neighbours: so deep do cells reach a wall
-_POINT = 1e-9  # faces below this part of their neighbours' distance (to the power d-1) are corners: lattices have them
+REACH = 3  # particles within so many largest distances of nearest neighbours of a wall get an image behind it
+_POINT = 1e-9  # smaller faces, over their neighbours' distance to the power d-1, are corners: lattices have them
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,8 @@ class Cells:
     volumes (n,)     m^d; they add up to the container's
     walls            {side: (nodes (k,), areas (k,), distances (k,))}: the cells that touch a side of the container,
                      the area of their part of it and its distance from the centre, m. Sides are 0, 1, ... in the
-                     order of outline.sides, or of the axes: low x, high x, low y, high y ... of a box
+                     order of polygon.sides, or of the axes: low x, high x, low y, high y ... of a box; of `layered`
+                     cells, -2 and -1 are the low and the high end
     """
 
     edges: np.ndarray
@@ -65,8 +66,7 @@ def cells(positions, *, box=None, polygon=None):
 
     positions (n, d) m, inside the container: a box of sides (d,) m with one corner at the origin, in 2D or 3D; or a
     polygon (k, 2) m. Each particle near a side has a mirror image behind it: the face between the two lies in the
-    side. (Behind a curved side, in its tangent; around a re-entrant corner two cells may overlap a little, or leave a
-    little gap.) Raises ParameterError.
+    side. (Around a re-entrant corner two cells may overlap a little, or leave a little gap.) Raises ParameterError.
     """
     positions = np.asarray(positions, float)
     require((box is None) != (polygon is None), "box", box, "given, or else polygon, not both")
@@ -82,7 +82,7 @@ def cells(positions, *, box=None, polygon=None):
         near = np.flatnonzero((apart < 2 * reach) & (apart > 0))
         points.append(mirrored[near]), owner.append(near), side.append(np.full(len(near), number))
     points, owner, side = map(np.concatenate, (points, owner, side))
-    # Far points close every cell, so that the last images are no special case either.
+    # Far points close every cell, those of the images too.
     middle, span = points.mean(axis=0), np.ptp(points, axis=0).max()
     far = middle + 10 * span * np.vstack([np.eye(dimension), -np.ones((1, dimension))])
     return _measure(points, owner, side, far, n)
@@ -91,17 +91,17 @@ def cells(positions, *, box=None, polygon=None):
 def _measure(points, owner, side, far, n):
     diagram = Voronoi(np.vstack([points, far]))
     pairs = np.sort(diagram.ridge_points, axis=1)
-    of_ours = np.flatnonzero((pairs[:, 0] < n) & (pairs[:, 1] < len(points)))
-    area = _areas(diagram, of_ours)
-    pairs = pairs[of_ours]
+    of_cells = np.flatnonzero((pairs[:, 0] < n) & (pairs[:, 1] < len(points)))
+    area = _areas(diagram, of_cells)
+    pairs = pairs[of_cells]
     distance = np.linalg.norm(points[pairs[:, 1]] - points[pairs[:, 0]], axis=1)
     real = area > _POINT * distance ** (points.shape[1] - 1)
     pairs, area, distance = pairs[real], area[real], distance[real]
     inner = pairs[:, 1] < n
-    # A cell is made of pyramids from its centre to its faces, of height half the distance.
+    # A cell consists of pyramids from its centre to its faces, whose height is half the distance.
     pyramid = area * distance / (2 * points.shape[1])
     volumes = np.bincount(pairs[:, 0], pyramid, n) + np.bincount(pairs[inner, 1], pyramid[inner], n)
-    order = np.lexsort((pairs[inner, 1], pairs[inner, 0]))
+    order = _sorted(pairs[inner])
     walls = {}
     for number in np.unique(side[n:]):
         at = ~inner & (side[pairs[:, 1]] == number) & (owner[pairs[:, 1]] == pairs[:, 0])
@@ -126,12 +126,15 @@ def _areas(diagram, ridges):
     return np.linalg.norm(np.add.reduceat(fans, start), axis=1) / 2
 
 
+def _sorted(pairs):
+    return np.lexsort((pairs[:, 1], pairs[:, 0]))
+
+
 def _behind_box(positions, box):
     require(np.shape(box) == (positions.shape[1],), "box", box, f"{positions.shape[1]} sides", "m")
-    sides = np.array([positive("box", length, "m") for length in box])
-    inside = ((positions > 0) & (positions < sides)).all()
-    require(inside, "positions", "not all inside", "inside the box", "m")
-    for axis, length in enumerate(sides):
+    lengths = np.array([positive("box", length, "m") for length in box])
+    require(((positions > 0) & (positions < lengths)).all(), "positions", "not all inside", "inside the box", "m")
+    for axis, length in enumerate(lengths):
         for wall in (0.0, length):
             mirrored = positions.copy()
             mirrored[:, axis] = 2 * wall - mirrored[:, axis]
@@ -139,12 +142,38 @@ def _behind_box(positions, box):
 
 
 def _behind_polygon(positions, polygon):
-    polygon = outline.check_polygon(polygon)
-    require(outline.inside(positions, polygon).all(), "positions", "not all inside", "inside the polygon", "m")
-    for start, edge in outline.sides(polygon):
-        mirrored = 2 * outline.nearest_on_edges(positions, start, edge)[0] - positions
-        # Around a re-entrant corner an image may fall into the other cutter_radius, where it has no wall to make.
-        yield np.where(outline.inside(mirrored, polygon)[:, None], positions, mirrored)
+    polygon = check_polygon(polygon)
+    require(inside(positions, polygon).all(), "positions", "not all inside", "inside the polygon", "m")
+    for start, edge in sides(polygon):
+        mirrored = 2 * nearest_on_edges(positions, start, edge)[0] - positions
+        # Around a re-entrant corner an image may lie inside of the polygon, where it belongs to no wall.
+        yield np.where(inside(mirrored, polygon)[:, None], positions, mirrored)
+
+
+def layered(section, layers, thickness):
+    """Cells of a plane section repeated in so many layers across, each `thickness` (m) deep: Cells in space, exactly.
+
+    section: Cells of n particles in the plane. Particle k of layer l, counted from the low end, has the number l n + k;
+    its centre is in the middle of the layer. Raises ParameterError for a number of layers below 1 or a thickness of 0.
+    """
+    require(layers >= 1, "layers", layers, "at least 1")
+    thickness, n = positive("thickness", thickness, "m"), len(section.volumes)
+    first = n * np.arange(layers)
+
+    def repeat(values, times=layers):
+        return np.tile(values, times)
+
+    across = np.arange(n * (layers - 1))
+    edges = np.vstack([(section.edges + first[:, None, None]).reshape(-1, 2), np.column_stack([across, across + n])])
+    faces = np.concatenate([repeat(section.faces) * thickness, repeat(section.volumes, layers - 1)])
+    distances = np.concatenate([repeat(section.distances), np.full(across.size, thickness)])
+    walls = {side: ((nodes + first[:, None]).ravel(), repeat(areas) * thickness, repeat(away))
+             for side, (nodes, areas, away) in section.walls.items()}
+    for side, layer in ((-2, 0), (-1, layers - 1)):
+        walls[side] = n * layer + np.arange(n), section.volumes, np.full(n, thickness / 2)
+    order = _sorted(edges)
+    return Cells(edges=edges[order], faces=faces[order], distances=distances[order], walls=walls,
+                 volumes=repeat(section.volumes) * thickness)
 
 
 def among(pairs, others, n):
@@ -155,10 +184,10 @@ def among(pairs, others, n):
 def conducting(edges, joined, facing, n):
     """Which neighbours exchange heat while some of the contacts are open: (m,) bool.
 
-    edges (m, 2) neighbours of n particles; joined (m,) bool: bonded or touching, those do; facing (m,) bool: never
-    bonded, they only face each other across a pore. These do while the pore is closed, that is while a third particle
-    joins them by two pairs that do: a crack between them would have to part the third from one of the two. All others
-    are cracks, and do not.
+    edges (m, 2) neighbours of n particles; joined (m,) bool: bonded or touching, these conduct; facing (m,) bool: never
+    bonded, they only face each other across a pore. These conduct while the pore is closed, that is, while a third
+    particle is connected to both by conducting pairs: a crack between the two would have to separate it from one of
+    them. All others are cracks and do not conduct.
     """
     edges, conducts = np.asarray(edges), np.array(joined, bool)
     while True:

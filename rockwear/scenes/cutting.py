@@ -123,8 +123,8 @@ PARAMETERS = [
     Parameter("heat_sharing", "effusivity", "", choice("effusivity", "equal"), "of friction heat between tool and rock",
               "P 39-41; M 4.5 shares equally"),
     Parameter("conduction", True, "", flag, "false: all heat stays with the particles that it arose at", "M 10.1"),
-    Parameter("bond_conductance", "cells", "", choice(*PATHS), "between particles: by the faces of their cells; one "
-              "value fitted to the packing; or a bar between two centres", "ours; ours; P 64-65, M 11.1: half of P's"),
+    Parameter("bond_conductance", "voronoi", "", choice(*PATHS), "between particles: by the faces of their Voronoi cells; "
+              "one value fitted to the packing; or a bar between two centres, or half of it", "ours; ours; P 64-65; M 11.1"),
     Parameter("shank", "insulated", "", choice("insulated", "fixed"), "the tool's particles held by the shank", "M 11.3"),
     Parameter("shank_temperature", 293.15, "K", number(0), "of a fixed root", "M 11.3"),
     Parameter("contact_conductance", 1500.0, "W/m2K", number(0), "between tool and rock", "P 5.2"),
@@ -390,7 +390,7 @@ class Cutting(Scene):
 
     def _capacity(self, body, specific_heat):
         """(n,) J/K: of the cells where heat passes their faces, else of the particles' own masses as in the sources."""
-        masses = body.density * body.cells.volumes if self.v.bond_conductance == "cells" else body.masses
+        masses = body.density * body.cells.volumes if self.v.bond_conductance == "voronoi" else body.masses
         return masses * specific_heat
 
     def _periods(self):

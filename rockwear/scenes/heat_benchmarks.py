@@ -51,8 +51,8 @@ PARAMETERS = [
     Parameter("radius_ratio", 1.5, "", number(1, 4), "largest over smallest radius of the random packing", "M 5.1"),
     Parameter("porosity", 0.12, "", number(0), "of the random packing", "P 5.2"),
     Parameter("seed", 1, "", integer(0), "of the random packing"),
-    Parameter("bond_conductance", "cells", "", choice(*PATHS), "between particles: by the faces of their cells; one "
-              "value fitted to the packing; or a bar between two centres", "ours; ours; P 64-65, M 11.1: half of P's"),
+    Parameter("bond_conductance", "voronoi", "", choice(*PATHS), "between particles: by the faces of their Voronoi cells; "
+              "one value fitted to the packing; or a bar between two centres, or half of it", "ours; ours; P 64-65; M 11.1"),
     Parameter("step_fraction", 0.5, "", above_zero, "heat step over the stable one, at most 1", "calibration/benchmarks/heat.py"),
 ]
 
@@ -89,7 +89,7 @@ def network(name, rock, model):
     """The benchmark's HeatNetwork over a specimen at t = 0: its capacities, paths, faces and sources."""
     load, material = BENCHMARKS[name].load, BENCHMARKS[name].material
     conductivity, heat = material["conductivity"], material["density"] * material["specific_heat"]
-    capacity = heat * (rock.cells.volumes if model == "cells" else rock.masses / rock.density)
+    capacity = heat * (rock.cells.volumes if model == "voronoi" else rock.masses / rock.density)
     edges, conductance = paths(
         model, conductivity, pairs=rock.pairs, cells=lambda: rock.cells, fitted=lambda: calibrated_conductance(
             positions=rock.positions, edges=rock.pairs, conductance=1.0, conductivity=conductivity)[0])

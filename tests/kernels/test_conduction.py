@@ -6,6 +6,7 @@ from scipy.spatial import cKDTree
 from rockwear.kernels import analytic
 from rockwear.kernels import voronoi as voronoi
 from rockwear.kernels.checks import ParameterError
+from rockwear.kernels.packing import pack
 from rockwear.kernels.conduction import (
     PATHS, HeatNetwork, bar_conductance, calibrated_conductance, effective_conductivity, effusivity,
     effusivity_share, paths)
@@ -101,7 +102,7 @@ def test_second_order_in_space():
     sizes = np.array([8, 16, 32])
     for cells in sizes:
         network = rod(cells, np.sin(np.pi * np.arange(cells + 1) / cells))
-        network.advance(0.1, step=5e-6)
+        network.advance(0.1, step=1e-5)
         errors.append(abs(network.temperature[cells // 2] * np.exp(0.1 * np.pi**2) - 1))
     assert -np.polyfit(np.log(sizes), np.log(errors), 1)[0] == pytest.approx(2.0, abs=0.05)
     assert errors[-1] < 1e-3
@@ -126,7 +127,7 @@ def slab(cells, thickness, conductivity, density, specific_heat):
     return network, np.linspace(0, thickness, cells + 1)
 
 
-def test_benchmark_slab_heated_inside():  # M 7.6.1
+def test_benchmark_slab_heated_inside():  # [Rojek 2003, 7.6.1]
     material = dict(conductivity=16.0, density=1.0, specific_heat=1.0)
     network, x = slab(40, 8.0, **material)
     network.fix([0, 40], 0.0)
@@ -141,7 +142,7 @@ def test_benchmark_slab_heated_inside():  # M 7.6.1
     assert network.steady_state() == pytest.approx(steady, abs=1e-6)
 
 
-def test_benchmark_half_space_under_flux():  # M 7.6.2
+def test_benchmark_half_space_under_flux():  # [Rojek 2003, 7.6.2]
     material = dict(conductivity=1.0, density=1.0, specific_heat=1.0)
     network, x = slab(300, 10.0, **material)
     x = x + x[1] / 2  # here the particles at the ends are whole, their centres half a spacing inside
@@ -151,7 +152,7 @@ def test_benchmark_half_space_under_flux():  # M 7.6.2
     assert abs(network.temperature - exact).max() < 1e-3
 
 
-def test_benchmark_slab_with_jumping_faces():  # M 7.6.3
+def test_benchmark_slab_with_jumping_faces():  # [Rojek 2003, 7.6.3]
     material = dict(conductivity=6.0, density=3.0, specific_heat=2.0)
     network, x = slab(60, 1.0, **material)
     network.fix([0, 60], 100.0)
@@ -236,7 +237,7 @@ def test_heat_balance_closes_to_round_off():
     assert network.heat_content - before == pytest.approx(sum(balance.values()), abs=1e-11 * scale + 1e-12 * before)
 
 
-def test_each_entry_of_the_book_alone():
+def test_each_entry_of_the_balance_alone():
     network = HeatNetwork(capacity=[2.0], edges=[], conductance=1.0, temperature=300.0)
     network.source(0, 5.0)
     network.advance(4.0)
@@ -385,7 +386,7 @@ def test_radiation_stiffens_within_one_visit():
     network = HeatNetwork(capacity=[1.0], edges=[], conductance=1.0, temperature=10.0)
     network.source(0, 5e4)
     network.radiate(0, 0.1, 10.0)
-    network.advance(1e3)
+    network.advance(100.0)
     assert network.temperature == pytest.approx(network.steady_state())
 
 
@@ -408,6 +409,22 @@ def test_cubic_lattice_conducts_h_over_d():
     positions = grid(7, 8, 9, diameter=0.002)
     got = effective_conductivity(positions=positions, edges=touching(positions, 0.002), conductance=5.0)
     assert got == pytest.approx([2500.0] * 3, rel=1e-9)
+
+
+def test_bars_between_equal_spheres_conduct_as_the_material_on_cubes():
+    positions, radius = grid(6, 6, 6, diameter=0.004), 0.002
+    for model, part in (("bar", 1.0), ("half_bar", 0.5)):
+        edges, conductance = paths(model, 5.0, pairs=touching(positions, 0.004), cells=None, fitted=None,
+                                   thickness=2 * radius)
+        got = effective_conductivity(positions=positions, edges=edges, conductance=conductance)
+        assert got == pytest.approx([5.0 * part] * 3, rel=1e-9)
+
+
+def test_a_random_packing_of_spheres_is_calibrated():
+    positions = pack(box=(0.04, 0.04, 0.04), radius_min=2e-3, radius_max=3e-3, porosity=0.4, seed=1).positions
+    edges = cKDTree(positions).query_pairs(5e-3, output_type="ndarray")
+    scaled = calibrated_conductance(positions=positions, edges=edges, conductance=1.0, conductivity=60.0)
+    assert effective_conductivity(positions=positions, edges=edges, conductance=scaled).mean() == pytest.approx(60.0)
 
 
 def test_directions_are_told_apart():
@@ -436,7 +453,7 @@ def test_calibrated_packing_has_the_wanted_conductivity():
 
 
 def test_numbers_of_the_sources():
-    assert bar_conductance(5.0, 1.0) == 5.0 and bar_conductance(60.0, 1.0) == 60.0  # P 5.2
+    assert bar_conductance(5.0, 1.0) == 5.0 and bar_conductance(60.0, 1.0) == 60.0  # [Rojek 2014, 5.2]
     rock, steel = effusivity(5.0, 2500.0, 1970.0), effusivity(60.0, 7830.0, 450.0)
     assert rock == pytest.approx(4962.36, abs=0.01) and steel == pytest.approx(14539.94, abs=0.01)
     assert effusivity_share(rock, steel) + effusivity_share(steel, rock) == pytest.approx(1.0)
@@ -449,7 +466,7 @@ def test_paths_of_the_four_models():
     of_grid = voronoi.cells(grid(4, 4, diameter=1.0) + 0.5, box=(4, 4))
     found = {model: paths(model, 8.0, pairs=pairs, cells=lambda: of_grid, fitted=lambda: 7.0) for model in PATHS}
     assert all(np.array_equal(np.unique(edges, axis=0), np.unique(pairs, axis=0)) for edges, _ in found.values())
-    each = {"cells": 8.0, "packing": 7.0, "P": 8.0, "M": 4.0}
+    each = {"voronoi": 8.0, "fitted": 7.0, "bar": 8.0, "half_bar": 4.0}
     assert all(values == pytest.approx([each[model]] * 24) for model, (_, values) in found.items())
     with pytest.raises(ParameterError, match="model"):
         paths("bars", 8.0, pairs=pairs, cells=None, fitted=None)
@@ -521,7 +538,7 @@ def glowing(network_of):
 
 @pytest.mark.parametrize("case", [one_contact, stiff_chain, in_water, glowing])
 @pytest.mark.parametrize("steps", [0.3, 7.0, 1000.0])
-def test_hard_cases_stay_bounded_and_keep_their_books(case, steps):
+def test_hard_cases_stay_bounded_and_close_their_balance(case, steps):
     network = case(HeatNetwork)
     content = network.heat_content
     duration = steps * network.stable_step()

@@ -166,6 +166,22 @@ def test_crack_counts_from_about_a_diameter_on():
         assert unit(halves + opening * np.outer(upper, [0, 1])).sum() == pytest.approx(whole + added)
 
 
+def test_pores_of_a_box_in_space_are_no_surface():
+    """A particle missing inside of a box uncovers nothing, nor does a cavity of any size; a wide shaft does."""
+    box = grid(9, 8, 7)
+    closed, inside = unit(box), np.all((box > 0) & (box < [16, 14, 12]), axis=1)
+    middle = np.array([8, 6, 6])
+    pore = (box == middle).all(axis=1)
+    cavity = (abs(box - middle) < 3).all(axis=1)
+    for gone in (pore, cavity):
+        exposed = unit(box[~gone])
+        assert exposed.sum() == pytest.approx(closed.sum()) and np.all(exposed[inside[~gone]] == 0)
+    shaft = (abs(box - middle)[:, :2] < 3).all(axis=1) & (box[:, 2] > 3)
+    exposed = unit(box[~shaft])
+    wall = (abs(box - middle)[:, 0] == 4) & (box[:, 1] == 6) & (box[:, 2] > 5)
+    assert np.all(exposed[wall[~shaft]] > 2) and exposed.sum() > closed.sum() + 150
+
+
 def test_notch_is_free_to_its_tip():
     plate = grid(21, 20)
     cut = (abs(plate[:, 0] - 20) < 3) & (plate[:, 1] > 10)

@@ -71,7 +71,7 @@ def test_a_warm_body_wears_warm():
 @pytest.mark.parametrize("triangular", [False, True])
 @pytest.mark.parametrize("depth", [1.0, 3.0])
 def test_a_flat_face_that_loses_four_rows_keeps_its_heat_and_its_temperature(triangular, depth):
-    """Of the heat in the layer that is left, what leaves unhandled is below 1 %; simply taken away it would be 70 to 98 %."""
+    """Less than 1 % of the heat in the layer that is left is lost; without the kernel it would be 70 to 98 %."""
     x, adjacent = lattice(30, 30, triangular=triangular)
     field = np.exp(x[:, 1] / depth)
     order = np.concatenate([30 * row + np.random.default_rng(row).permutation(30) for row in range(4)])

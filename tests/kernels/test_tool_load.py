@@ -1,9 +1,9 @@
-"""The tool under its mean load: exact states of a bar, and heat that goes out as it comes in."""
+"""The tool under its mean load: exact states of a bar, and heat that goes out as it comes in; means over a time."""
 import numpy as np
 import pytest
 
 from rockwear.kernels.checks import ParameterError
-from rockwear.kernels.tool_load import tool_under_load
+from rockwear.kernels.tool_load import MeanLoad, tool_under_load
 
 N, H, C = 20, 3.0, 2.0
 BAR = dict(capacity=np.full(N, C), paths=(np.column_stack([np.arange(N - 1), np.arange(1, N)]), np.full(N - 1, H)),
@@ -16,13 +16,13 @@ def at(place, value):
     return found
 
 
-def test_a_bar_with_a_held_root_rises_linearly():
-    network = tool_under_load(**BAR, friction_heat=at(0, 60.0), contact=np.zeros(N), convection=np.zeros(N), shank=[N - 1],
-                              shank_temperature=310.0)
+def test_a_bar_with_a_fixed_shank_rises_linearly():
+    network = tool_under_load(**BAR, friction_heat=at(0, 60.0), contact=np.zeros(N), convection=np.zeros(N),
+                              shank=[N - 1], shank_temperature=310.0)
     assert network.steady_state() == pytest.approx(310 + 60 / H * np.arange(N - 1, -1, -1), rel=1e-12)
 
 
-def test_with_an_insulated_root_all_heat_goes_to_rock_and_air():
+def test_with_an_insulated_shank_all_heat_goes_to_rock_and_air():
     contact, air, heat = at(0, 1.5), at(slice(5, 15), 0.2), at(slice(0, 3), 7.0)
     network = tool_under_load(**BAR, friction_heat=heat, contact=contact, convection=air)
     end = network.steady_state()
@@ -41,3 +41,18 @@ def test_a_load_without_a_way_out_is_refused():
     network = tool_under_load(**BAR, friction_heat=at(0, 1.0), contact=np.zeros(N), convection=np.zeros(N))
     with pytest.raises(ParameterError, match="no node is fixed"):
         network.steady_state()
+
+
+def test_means_over_two_visits():
+    load = MeanLoad(2)
+    load.seconds += 4.0
+    load.friction_heat += [8.0, 0.0]
+    load.contact += [1.0, 0.0]
+    load.contact_kelvin += [1.0 * 300.0, 0.0]
+    load.contact += [3.0, 0.0]
+    load.contact_kelvin += [3.0 * 400.0, 0.0]
+    other = MeanLoad(2)
+    other.restore(load.state())
+    load.contact[:] = 0.0
+    heat, contact, rock = other.means(ambient=283.0)
+    assert heat.tolist() == [2.0, 0.0] and contact.tolist() == [1.0, 0.0] and rock.tolist() == [375.0, 283.0]

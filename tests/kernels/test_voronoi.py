@@ -1,9 +1,9 @@
-"""Cells of packings: closed, without gap, and so exact for linear temperatures; and which neighbours conduct."""
+"""Voronoi cells: closed, without gap, and so exact for linear temperatures; and which neighbours conduct."""
 import numpy as np
 import pytest
 
 from rockwear.kernels import polygon as outline
-from rockwear.kernels.voronoi import cells, conducting
+from rockwear.kernels.voronoi import cells, conducting, layered
 from rockwear.kernels.checks import ParameterError
 from rockwear.kernels.conduction import HeatNetwork, effective_conductivity
 from rockwear.kernels.packing import contacts, pack
@@ -61,6 +61,98 @@ def test_a_linear_temperature_is_exactly_steady(box, seed):
     network.convect(touching, coefficient[touching], heat[touching] / coefficient[touching])
     assert network.steady_state() == pytest.approx(positions @ slope, rel=1e-9)
 
+
+def conducted(found, low, high, conductivity=5.0):
+    """W through cells whose sides `low` and `high` are held 1 K apart, and the stationary temperatures."""
+    heat, area = np.zeros(len(found.volumes)), np.zeros(len(found.volumes))
+    for side, kelvin in ((low, 0.0), (high, 1.0)):
+        nodes, conductance = found.wall_conductance(side, conductivity)
+        np.add.at(area, nodes, conductance)
+        np.add.at(heat, nodes, conductance * kelvin)
+    network = HeatNetwork(capacity=found.volumes, edges=found.edges, conductance=found.conductance(conductivity),
+                          temperature=0.0)
+    held = area > 0
+    network.convect(held, area[held], heat[held] / area[held])
+    temperature = network.steady_state()
+    nodes, conductance = found.wall_conductance(high, conductivity)
+    return float(conductance @ (1.0 - temperature[nodes])), temperature
+
+
+def test_a_packing_of_spheres_between_two_faces_conducts_exactly():
+    box = 0.04, 0.03, 0.025
+    positions = pack(box=box, radius_min=2e-3, radius_max=3e-3, porosity=0.4, seed=1).positions
+    found = cells(positions, box=box)
+    for axis in range(3):
+        watt, temperature = conducted(found, 2 * axis, 2 * axis + 1)
+        assert watt == pytest.approx(5.0 * np.prod(box) / box[axis]**2, rel=1e-9)
+        assert temperature == pytest.approx(positions[:, axis] / box[axis], abs=1e-9)
+
+
+def test_a_fin_of_random_cells_converges_with_the_square_of_their_size():
+    """A bar between a hot and a cold face, cooled along its length: sinh, in space, over a random arrangement."""
+    errors, counts = [], np.array([4, 8, 12])
+    for across in counts:
+        box, steps = (1.0, 0.25, 0.25), np.array([across * 2, across, across])
+        places = (grid(*steps) + np.random.default_rng(0).uniform(-0.2, 0.2, (steps.prod(), 3))) / steps * box
+        found = cells(places, box=box)
+        network = HeatNetwork(capacity=np.ones(len(places)), edges=found.edges, conductance=found.conductance(1.0),
+                              temperature=0.0)
+        # Cooled in the volume, T'' = 25 T: the same equation as that of a thin fin.
+        coefficient, heat = 25.0 * found.volumes, np.zeros(len(places))
+        for side, kelvin in ((0, 0.0), (1, 1.0)):
+            nodes, conductance = found.wall_conductance(side, 1.0)
+            coefficient[nodes] += conductance
+            heat[nodes] += conductance * kelvin
+        network.convect(range(len(places)), coefficient, heat / coefficient)
+        gap = network.steady_state() - np.sinh(5 * places[:, 0]) / np.sinh(5)
+        errors.append(np.sqrt(np.mean(gap**2)))
+    assert errors[-1] < 1.2e-3 and -np.polyfit(np.log(counts), np.log(errors), 1)[0] > 1.8
+
+
+# ---- layers
+
+def test_layers_of_a_section_divide_its_prism():
+    positions, _, box = rock()
+    section = cells(positions, box=box)
+    found, depth = layered(section, 5, 0.002), 5 * 0.002
+    assert found.volumes.sum() == pytest.approx(np.prod(box) * depth, rel=1e-12)
+    areas = {side: areas.sum() for side, (_, areas, _) in found.walls.items()}
+    assert [areas[side] for side in (-2, -1)] == pytest.approx([np.prod(box)] * 2, rel=1e-12)
+    assert [areas[side] for side in range(4)] == pytest.approx(np.repeat(np.prod(box) / np.array(box), 2) * depth)
+    n = len(positions)
+    assert (found.edges[:, 0] < found.edges[:, 1]).all() and np.all(np.diff(found.edges @ [5 * n, 1]) > 0)
+
+
+def test_layers_are_the_cells_of_the_repeated_particles():
+    """The diagram of all particles in space has the same cells, apart from what is left of degenerate corners."""
+    positions, box = scattered(1.0, 0.8, n=40), (1.0, 0.8, 0.6)
+    deep = np.vstack([np.column_stack([positions, np.full(40, z)]) for z in (0.1, 0.3, 0.5)])
+    whole, found = cells(deep, box=box), layered(cells(positions, box=box[:2]), 3, 0.2)
+    assert found.volumes == pytest.approx(whole.volumes, rel=1e-9)
+    assert np.array_equal(found.edges, whole.edges)
+    assert found.faces == pytest.approx(whole.faces, rel=1e-6, abs=1e-9)
+    assert found.distances == pytest.approx(whole.distances, rel=1e-12)
+    for side, same in ((0, 0), (1, 1), (2, 2), (3, 3), (-2, 4), (-1, 5)):
+        one, other = (dict(zip(nodes.tolist(), areas / away))
+                      for nodes, areas, away in (found.walls[side], whole.walls[same]))
+        assert one == pytest.approx(other, rel=1e-6)
+
+
+def test_layers_conduct_exactly_along_and_across():
+    positions, _, box = rock()
+    found = layered(cells(positions, box=box), 4, 0.003)
+    box = *box, 0.012
+    for axis, sides in enumerate(((0, 1), (2, 3), (-2, -1))):
+        assert conducted(found, *sides)[0] == pytest.approx(5.0 * np.prod(box) / box[axis]**2, rel=1e-9)
+
+
+@pytest.mark.parametrize("wrong", [(0, 0.1), (3, 0.0), (3, np.nan)])
+def test_layers_without_depth_are_refused(wrong):
+    with pytest.raises(ParameterError):
+        layered(cells(scattered(1.0, 1.0, n=10), box=(1, 1)), *wrong)
+
+
+# ---- in a polygon
 
 @pytest.mark.parametrize("polygon, off, wall_off", [(np.array([[0, 0], [0.04, 0], [0.02, 0.03]]), 1e-12, 1e-12),
                                                     (TOOTH, 2e-4, 0.01), (NOTCHED, 2e-3, 0.04)])

@@ -4,6 +4,7 @@ import signal
 import numpy as np
 import pytest
 
+from rockwear.kernels.conduction import PATHS
 from tests.running import ROOT, arguments, assert_as_if_never_stopped, interrupt_script, run_script
 
 SCRIPT = ROOT / "yade_scripts/heat_benchmarks.py"
@@ -49,11 +50,11 @@ def test_the_books_close_and_only_heat_is_there(everything):
 
 def test_bars_between_centres_miss_the_packing(tmp_path):
     rms = {}
-    for model in ("cells", "packing", "P", "M"):
+    for model in PATHS:
         run = benchmarks(tmp_path / model, bond_conductance=model, packing="random", benchmark="jump", refinements=1)
         assert run.code == 0, run.stderr
         rms[model] = errors(run)[-1, 7]
-    assert rms["cells"] < 0.001 and 0.005 < rms["packing"] < 0.04 and min(rms["P"], rms["M"]) > 0.03
+    assert rms["voronoi"] < 0.001 and 0.005 < rms["fitted"] < 0.04 and min(rms["bar"], rms["half_bar"]) > 0.03
 
 
 def test_stopped_and_resumed_equals_never_stopped(everything, tmp_path):
