@@ -11,7 +11,7 @@ TO_LINT := python3-flake8
 .DEFAULT_GOAL := help
 .PHONY: help setup setup-test run test test-kernels validate bench campaigns campaign-wear campaign-uniaxial lint clean
 
-# $(call install,packages,modules): the packages that are missing, where there is apt-get; then all modules must be there.
+# $(call install,packages,modules): the missing packages, where there is apt-get; then each module must be found.
 define install
 @if command -v apt-get >/dev/null && command -v dpkg-query >/dev/null; then \
   missing=$$(for p in $(1); do \
@@ -33,12 +33,14 @@ help: ## list the targets
 
 setup: ## install what a run needs (Debian packages) and check that YADE starts
 	$(call install,$(TO_RUN),numpy scipy matplotlib PIL stl)
-	@yade --version >/dev/null 2>&1 || { echo "setup: YADE is missing or does not start (try: yade --version)" >&2; exit 1; }
+	@yade --version >/dev/null 2>&1 || \
+	  { echo "setup: YADE is missing or does not start (try: yade --version)" >&2; exit 1; }
 
 setup-test: setup
 	$(call install,$(TO_TEST),pytest xdist)
 
-# Rock graded threefold below the cut, and wear 100,000 times faster instead of 7000 [Rojek 2003], so that the tip goes in minutes.
+# Rock graded threefold below the cut, and wear accelerated 100,000 times instead of 7000 times [Rojek 2003, 9.2], so that
+# the tip wears away within minutes.
 run: setup ## cut with the test tooth over many cycles; report in out/tooth_cycles/report.html
 	$(TOOTH) --grading_factor 3 --wear_acceleration 1e5 --out $(OUT)/tooth_cycles
 
@@ -56,7 +58,8 @@ bench: setup ## speed against error; figures and numbers in out/bench
 
 campaigns: setup ## the test tooth in four packings, two runs at a time
 	mkdir -p $(OUT)/campaign
-	yade-batch -j2 --job-threads=1 --log=$(OUT)/campaign/@.log yade_scripts/tooth_cycles.seeds.table yade_scripts/tooth_cycles.py
+	yade-batch -j2 --job-threads=1 --log=$(OUT)/campaign/@.log \
+	  yade_scripts/tooth_cycles.seeds.table yade_scripts/tooth_cycles.py
 
 campaign-wear: setup ## test tooth and ripper worn over many cycles, sharp and worn compared (four hours; resumes)
 	$(PYTHON) -m calibration.campaigns.wear $(OUT)/campaign-wear
