@@ -39,7 +39,7 @@ setup: ## install what a run needs (Debian packages) and check that YADE starts
 setup-test: setup
 	$(call install,$(TO_TEST),pytest xdist)
 
-# Rock graded threefold below the cut, and wear accelerated 100,000 times instead of 7000 times [Rojek 2003, 9.2], so that
+# Rock graded threefold below the cut, and wear accelerated 100,000 times instead of 7000 [Rojek 2003, 9.2], so that
 # the tip wears away within minutes.
 run: setup ## cut with the test tooth over many cycles; report in out/tooth_cycles/report.html
 	$(TOOTH) --grading_factor 3 --wear_acceleration 1e5 --out $(OUT)/tooth_cycles
