@@ -1,4 +1,4 @@
-"""Checkpoints: the YADE scene and our own state in one folder, written so that at no moment the last good one is gone."""
+"""Checkpoints: YADE's scene and the state of the Python engines in one folder. The last good one is never lost."""
 import errno
 import gzip
 import hashlib
@@ -12,7 +12,7 @@ import numpy as np
 
 from rockwear.kernels.checks import ParameterError
 
-FORMAT = "rockwear checkpoint 1"
+FORMAT = "rockwear checkpoint 2"
 
 
 class CheckpointError(ParameterError):
@@ -51,7 +51,7 @@ def save(folder, *, identity, state, write_scenes):
 
     identity: a dict that a resuming run must match (scene, parameters, versions); state: a nested dict of numbers and
     arrays; write_scenes(directory): writes YADE's files there. The new set is complete, with its digests, before
-    current.json points to it; only then the old set goes.
+    current.json points to it; only then the old set is removed.
     """
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
@@ -64,7 +64,8 @@ def save(folder, *, identity, state, write_scenes):
         _check_whole(directory)
         files = {file.name: digest(file) for file in sorted(directory.iterdir())}
         pointer = folder / "current.json.new"
-        pointer.write_text(json.dumps({"format": FORMAT, "set": number, "files": files, "identity": identity}, indent=1), encoding="utf-8")
+        current = {"format": FORMAT, "set": number, "files": files, "identity": identity}
+        pointer.write_text(json.dumps(current, indent=1), encoding="utf-8")
         for file in [*directory.iterdir(), pointer]:
             with open(file, "rb") as stream:
                 os.fsync(stream.fileno())
@@ -78,7 +79,7 @@ def save(folder, *, identity, state, write_scenes):
 
 
 def _check_whole(directory):
-    """Raise OSError where YADE, which does not tell, could not write a scene to its end (a full disk)."""
+    """Raise OSError where a scene was not written to its end (a full disk): YADE reports no error."""
     for file in directory.glob("*.gz"):
         try:
             with gzip.open(file) as stream:
@@ -92,7 +93,7 @@ def load(folder, identity):
     """-> (state, directory of YADE's files) of the checkpoint in `folder`.
 
     Raises CheckpointError where there is none, where a file is missing, cut short or changed, and where it belongs to
-    another scene, other parameters or another YADE.
+    another scene, other parameters, or another version of rockwear or YADE.
     """
     folder = Path(folder)
     try:
@@ -103,7 +104,8 @@ def load(folder, identity):
         raise CheckpointError(folder, "whole: current.json cannot be read") from None
     if not isinstance(current, dict) or current.get("format") != FORMAT:
         raise CheckpointError(folder, f"of the format '{FORMAT}'")
-    if not isinstance(current.get("identity"), dict) or not isinstance(current.get("files"), dict) or "set" not in current:
+    entries = current.get("identity"), current.get("files")
+    if not all(isinstance(entry, dict) for entry in entries) or "set" not in current:
         raise CheckpointError(folder, "whole: current.json lacks some of identity, files and set")
     for name, expected in identity.items():
         found = current["identity"].get(name)

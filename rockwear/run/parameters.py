@@ -1,45 +1,123 @@
 """Parameters of a run from the command line or a yade-batch table."""
+import argparse
 import difflib
 import os
 import sys
 from pathlib import Path
 
 from rockwear.kernels.checks import ParameterError, require
-from rockwear.kernels.parameter import flag
+from rockwear.kernels.parameter import RENAMED_IN, Group, file, flag, text, unmet
+
+RENAMED = {
+    "acceleration": ("wear_acceleration",), "speed_up": ("time_scale",),
+    "coarsening": ("grading_factor", "scale_factor"), "coarseness": ("scale_factor",), "law": ("bond_law",),
+    "steel": ("hardness_table",), "root": ("shank",), "root_temperature": ("shank_temperature",),
+    "arm": ("cutter_radius",), "spin": ("angular_velocity",),
+}
+"""{old name of a parameter: the new names, of which a scene has one}."""
+
+LEFT_OUT = "-"
+"""A cell of a table whose row does not give the parameter of the column."""
 
 
-def read(parameters, arguments):
-    """{name: checked value} of all parameters, from `--name value` arguments or the row that yade-batch gives.
+def flat(groups):
+    """{name: Parameter} of Groups and single Parameters; where two have one name, the first."""
+    found = {}
+    for group in groups:
+        for parameter in (group if isinstance(group, Group) else (group,)):
+            found.setdefault(parameter.name, parameter)
+    return found
 
-    A flag may stand without a value. Raises ParameterError for an unknown name, a missing value or a broken rule.
+
+def read(groups, arguments):
+    """{name: checked value} of all parameters, from `--name value` arguments and the row that yade-batch gives.
+
+    groups: Groups, or single Parameters. A flag may stand without a value. Raises ParameterError for an unknown name, a
+    missing value, a broken rule, and for a parameter that is given but not used with the others.
     """
-    known = {parameter.name: parameter for parameter in parameters}
-    given = {**_table_row(), **_arguments(arguments, known)}
+    known = flat(groups)
+    given = {**_table_row(), **_arguments(groups, arguments)}
     for name, value in given.items():
         if name not in known:
-            close = difflib.get_close_matches(name, known, n=1)
-            raise ParameterError(name, value, f"a parameter of this scene{f'; did you mean {close[0]}' if close else ''}"
-                                              " (--help lists them)")
-    return {name: parameter.check(given.get(name, parameter.default)) for name, parameter in known.items()}
+            raise ParameterError(name, value, _advice(name, known))
+    values = {name: parameter.check(given.get(name, parameter.default)) for name, parameter in known.items()}
+    for name in given:
+        reason = unmet(known[name], values, known)
+        if reason:
+            raise ParameterError(name, _word(values[name]), f"left out with {reason} = {_word(values[reason])}",
+                                 known[name].unit)
+    return values
 
 
-def _arguments(arguments, known):
-    given, rest = {}, list(arguments)
-    while rest:
-        word = rest.pop(0)
-        if not word.startswith("--") or len(word) < 3:
+def _advice(name, known):
+    """The rule that an unknown name breaks."""
+    renamed = [new for new in RENAMED.get(name, ()) if new in known]
+    if renamed:
+        return f"given as {renamed[0]}, its name since {RENAMED_IN}"
+    close = difflib.get_close_matches(name, known, n=1)
+    return f"a parameter of this scene{f'; did you mean {close[0]}' if close else ''} (--help lists them)"
+
+
+def _word(value):
+    return str(value).lower() if isinstance(value, bool) else f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def _formatter(prog):
+    return argparse.HelpFormatter(prog, max_help_position=26, width=118)
+
+
+def _parser(groups):
+    """argparse's parser: one argument group a title, nothing converted, defaults left to `read`."""
+    parser = argparse.ArgumentParser(
+        usage=f"yade -n -x {sys.argv[0]} [--name value ...]", add_help=False, allow_abbrev=False, exit_on_error=False,
+        argument_default=argparse.SUPPRESS, formatter_class=_formatter)
+    sections, known = {}, flat(groups)
+    for group in groups:
+        title = group.title if isinstance(group, Group) else "parameters"
+        section = sections[title] = sections.get(title) or parser.add_argument_group(title)
+        for parameter in (group if isinstance(group, Group) else (group,)):
+            if known.pop(parameter.name, None) is None:
+                continue
+            values = {"nargs": "?", "const": "true"} if parameter.rule is flag else {}
+            section.add_argument(f"--{parameter.name}", metavar=_metavar(parameter),
+                                 help=_description(parameter).replace("%", "%%"), **values)
+    return parser
+
+
+def _metavar(parameter):
+    options = getattr(parameter.rule, "options", ("true", "false") if parameter.rule is flag else ())
+    return "|".join(options) or parameter.unit or {text: "TEXT", file: "FILE"}.get(parameter.rule, "NUMBER")
+
+
+def _description(parameter):
+    """Meaning, default with its unit, source, and the condition of use."""
+    default = f"{_word(parameter.default)} {parameter.unit}".strip() or "none"
+    used = "; ".join(f"{name} = {' or '.join(map(_word, values))}" for name, values in (parameter.when or {}).items())
+    return f"{parameter.meaning} (default {default}; {parameter.source}{f'; only with {used}' if used else ''})"
+
+
+def _arguments(groups, arguments):
+    """{name: text} of the command line."""
+    try:
+        found, others = _parser(groups).parse_known_args(_joined(arguments))
+    except argparse.ArgumentError as error:
+        raise ParameterError(error.argument_name.lstrip("-"), "", "given a value") from None
+    unknown = dict(word[2:].partition("=")[::2] for word in others)
+    return {**vars(found), **unknown}
+
+
+def _joined(words):
+    """`--name value` as `--name=value`, which argparse reads whatever the value begins with; - in names as _."""
+    joined = []
+    for word in words:
+        name, equals, value = word.partition("=")
+        if word.startswith("--") and len(name) > 2:
+            joined.append(f"--{name[2:].replace('-', '_')}{equals}{value}")
+        elif joined and "=" not in joined[-1]:
+            joined[-1] += f"={word}"
+        else:
             raise ParameterError("argument", word, "of the form --name value")
-        name, equals, value = word[2:].partition("=")
-        name = name.replace("-", "_")
-        if not equals:
-            if rest and not rest[0].startswith("--"):
-                value = rest.pop(0)
-            elif name in known and known[name].rule is flag:
-                value = "true"
-            else:
-                raise ParameterError(name, "", "given a value")
-        given[name] = value
-    return given
+    return joined
 
 
 def _batch_table():
@@ -49,15 +127,16 @@ def _batch_table():
         return None
     from yade.utils import TableParamReader
     table, line = place.rsplit(":", 1)
-    # YADE's reader takes the last character of every line for its break.
+    # YADE's reader drops the last character of every line, also where it is no line break.
     require(Path(table).read_bytes().endswith(b"\n"), "table", table, "closed by a line break")
     return int(line), TableParamReader(table).paramDict()
 
 
 def _table_row():
-    """{column: text} of the row's parameters; nothing outside a batch."""
+    """{column: text} of the row's parameters, without cells that are LEFT_OUT; nothing outside a batch."""
     line, rows = _batch_table() or (0, {0: {}})
-    return {name: value for name, value in rows[line].items() if not name.startswith("!") and name != "description"}
+    return {name: value for name, value in rows[line].items()
+            if not name.startswith("!") and name != "description" and value != LEFT_OUT}
 
 
 def batch_row():
@@ -74,8 +153,6 @@ def _folder_name(words):
     return "".join(c if c.isalnum() or c in "-_.=," else "_" for c in words)
 
 
-def describe(parameters, file=sys.stdout):
-    """Print every parameter with its default, unit, meaning and source."""
-    for parameter in parameters:
-        print(f"  --{parameter.name} {parameter.default} [{parameter.unit or '-'}]\n"
-              f"        {parameter.meaning} ({parameter.source})", file=file)
+def describe(groups):
+    """Print every parameter by group, with its unit, meaning, default, source and condition of use."""
+    print(_parser(groups).format_help(), end="")

@@ -1,4 +1,4 @@
-"""Particles with their fields as legacy VTK files, which ParaView opens as a series (Glyph: sphere, scale by diameter)."""
+"""Particles with their fields as legacy VTK files: a series for ParaView (Glyph: sphere, scale by diameter)."""
 import numpy as np
 
 

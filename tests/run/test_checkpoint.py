@@ -59,7 +59,8 @@ def test_refusals_say_why(tmp_path):
         checkpoint.load(tmp_path, IDENTITY)
     whole = json.loads((tmp_path / "current.json").read_text(encoding="utf-8"))
     for name in ("identity", "files", "set"):
-        (tmp_path / "current.json").write_text(json.dumps({k: v for k, v in whole.items() if k != name}), encoding="utf-8")
+        rest = {key: value for key, value in whole.items() if key != name}
+        (tmp_path / "current.json").write_text(json.dumps(rest), encoding="utf-8")
         with pytest.raises(checkpoint.CheckpointError, match="lacks some of identity, files and set"):
             checkpoint.load(tmp_path, IDENTITY)
     (tmp_path / "current.json").write_text(json.dumps({"format": "another"}), encoding="utf-8")

@@ -1,0 +1,54 @@
+"""What a run does around its scene, seen from outside of its process."""
+import os
+
+import pytest
+
+from rockwear.run import checkpoint
+from tests.running import ROOT, run_script
+
+SCRIPTS = ROOT / "tests/run/scripts"
+
+
+def error_of(run):
+    """The one line that a run without a traceback ends with."""
+    assert run.code == 2 and "Traceback" not in run.stderr, run.stderr
+    return run.stderr.splitlines()[-1]
+
+
+def test_a_run_listens_on_no_port(tmp_path):
+    assert error_of(run_script(SCRIPTS / "ports.py", cwd=tmp_path)) == "error: ports = []: must be listed"
+
+
+def test_a_batch_keeps_the_servers_that_its_overview_asks(tmp_path):
+    table = tmp_path / "table.txt"
+    table.write_text("out\nhere\n", encoding="utf-8")
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "YADE_BATCH": f"{table}:2"}
+    words = error_of(run_script(SCRIPTS / "ports.py", cwd=tmp_path, env=environment))
+    ports = [int(word) for word in words.partition("[")[2].partition("]")[0].split(",")]
+    assert len(ports) == 2 and min(ports) >= 9000
+
+
+@pytest.mark.parametrize("words, named", [
+    (["--k", "1e29"], "change k = 1e+29 N/m"),
+    (["--density", "1e-30", "--width", "1.5"], "change density = 1e-30 kg/m3"),
+    (["--time", "1e8", "--k=1e15"], "change k = 1e+15 N/m or time = 1e+08 s")])
+def test_too_many_steps_name_what_makes_them(words, named, tmp_path):
+    error = error_of(run_script(SCRIPTS / "steps.py", *words, cwd=tmp_path))
+    assert error.startswith("error: steps = ") and error.endswith(named)
+    assert os.listdir(tmp_path) == []
+
+
+def test_a_checkpoint_of_another_version_is_refused(tmp_path):
+    checkpoint.save(tmp_path / "out/checkpoint", identity={"rockwear version": "0.1.0"}, state={},
+                    write_scenes=lambda directory: None)
+    (tmp_path / "out/model.npz").touch()
+    error = error_of(run_script(SCRIPTS / "steps.py", "--out", str(tmp_path / "out"), "--resume"))
+    assert "must be of the same rockwear version: 0.1.0 there, " in error
+
+
+def test_help_shows_the_groups(tmp_path):
+    run = run_script(SCRIPTS / "steps.py", "--help", cwd=tmp_path)
+    assert run.code == 0
+    sections = {block.splitlines()[0]: block for block in run.stdout.split("\n\n")}
+    assert "--density kg/m3" in sections["oscillator:"] and "(default 1000 kg/m3; ours)" in sections["oscillator:"]
+    assert "--out TEXT" in sections["output:"]
