@@ -1,11 +1,11 @@
-"""What softening bonds cost: the uniaxial test with each bond law, in turns, its time a step over that of brittle ones.
+"""Cost of softening bonds: the uniaxial test with each bond law, in turns, its time per step over that of brittle bonds.
 
-    yade -n -x -j1 calibration/benchmarks/law_cost.py --out DIR [--turns 5] [--name value ...]
+    PYTHONPATH=. yade -n -x -j1 calibration/benchmarks/law_cost.py --out DIR [--turns 5] [--name value ...]
 
 The parameters are those of yade_scripts/uniaxial.py. All laws run from the first load to failure, one after the other,
-`turns` times; a law is compared with the brittle run of the same turn, and medians over the turns are kept. Beside the
-wall time there is the process's own time, which a busy machine disturbs less. DIR/law_cost.json gets one row a law,
-with the ratio along the test beside the share of bonds past their peak. A YADE script, started by bench.py.
+`turns` times; a law is compared with the brittle run of the same turn, and medians over the turns are reported. Processor
+time is listed beside wall time, because other processes disturb it less. Writes one row for each law into
+DIR/law_cost.json, with the ratio along the test beside the share of bonds past their peak. make bench runs it.
 """
 import json
 import os
@@ -24,8 +24,8 @@ from rockwear.kernels.parameter import Parameter, integer
 TURNS = Parameter("turns", 5, "", integer(1), "runs of each law")
 
 
-def stretches(values):
-    """One run to failure. -> a dict for each stretch between canonical points, all of them of one length."""
+def intervals(values):
+    """One run to failure. -> a dict for each interval between reproducible states, all of one length."""
     scene = UniaxialTest(values)
     scene.build()
     rows, failed = [], False
@@ -44,14 +44,14 @@ def stretches(values):
 
 
 def a_step(rows, clock):
-    """Seconds a step, mean over a run; clock: "wall" or "cpu"."""
+    """Seconds per step, mean over a run; clock: "wall" or "cpu"."""
     return sum(row[clock] for row in rows) / sum(row["steps"] for row in rows)
 
 
 def table(runs, H):
-    """One row a law: share of bonds past their peak (mean over the run, and at its end), ms a step, ratio to brittle.
+    """One row for each law: share of bonds past their peak (mean and at the end), ms per step, ratio to brittle.
 
-    runs: [{law: stretches}], one a turn. curve: stress (Pa), share past the peak and ratio (cpu) of every stretch.
+    runs: [{law: intervals}], one for each turn. curve: stress (Pa), share past the peak and ratio (cpu) of every interval.
     """
     found = []
     for law in runs[0]:
@@ -60,7 +60,7 @@ def table(runs, H):
         for clock in ("wall", "cpu"):
             row[f"ms_a_step_{clock}"] = 1e3 * median(a_step(rows, clock) for rows in turns)
             row[f"ratio_{clock}"] = median(a_step(turn[law], clock) / a_step(turn["brittle"], clock) for turn in runs)
-        # A law's runs are equal bit for bit: stretch by stretch they are at the same place.
+        # The runs of a law are equal bit for bit, so that their intervals correspond.
         whole = [a_step(turn["brittle"], "cpu") for turn in runs]
         row["curve"] = [{"stress": of_turns[0]["stress"], "past_peak": of_turns[0]["past_peak"],
                          "ratio": median(a_step([one], "cpu") / mean for one, mean in zip(of_turns, whole))}
@@ -76,14 +76,14 @@ def main():
     values = parameters.read([*PARAMETERS, *run.COMMON, TURNS], sys.argv[1:])
     folder = Path(values["out"] or "out/law_cost")
     folder.mkdir(parents=True, exist_ok=True)
-    runs = [{law: stretches({**values, "bond_law": law}) for law in LINEAR_LAWS} for _ in range(values["turns"])]
+    runs = [{law: intervals({**values, "bond_law": law}) for law in LINEAR_LAWS} for _ in range(values["turns"])]
     rows = table(runs, values["H"])
     (folder / "law_cost.json").write_text(json.dumps({"turns": values["turns"], "rows": rows}, indent=1), encoding="utf-8")
-    print("law           H, N/m   past peak, mean   at the end   ms a step   ratio: wall     cpu   cpu, worst stretch")
+    print("law           H, N/m   past peak, mean   at the end   ms per step   ratio: wall   cpu   cpu, slowest interval")
     for row in rows:
         H = f"{row['H']:.3g}" if row["H"] else "-"
         worst = max(point["ratio"] for point in row["curve"])
-        print(f"{row['law']:10}{H:>10}{row['past_peak_mean']:18.3f}{row['past_peak_end']:13.3f}"
+        print(f"{row['bond_law']:10}{H:>10}{row['past_peak_mean']:18.3f}{row['past_peak_end']:13.3f}"
               f"{row['ms_a_step_wall']:12.3f}{row['ratio_wall']:14.2f}{row['ratio_cpu']:8.2f}{worst:21.2f}")
     sys.stdout.flush()
     os._exit(0)

@@ -1,10 +1,10 @@
-"""How fast a specimen may be loaded: strength and E over the platens' speed, against the slowest.
+"""Admissible loading speed of a specimen: strength and E over the platens' speed, against the slowest.
 
     python3 -m calibration.benchmarks.loading_speed DIR        (part of make bench)
 
-Two rocks, M's (bonds strong in shear) and P's (Rt = Rn, kt = kn/5), compressed and pulled, over a decade and a half of
-speeds. What counts is the speed, not the rate of strain: stress is lost or gained over the time that a wave takes
-through the specimen, and that grows with the specimen as the rate falls. So 525 discs do for all.
+Two sets of bonds (campaigns.uniaxial.ROCKS), in compression and tension, over a decade and a half of speeds. The speed
+matters, not the rate of strain: the error grows with the time that a wave takes through the specimen, which is proportional
+to the specimen's size, while the rate of strain is inversely proportional to it. So 525 discs are enough.
 """
 import json
 import sys
@@ -13,11 +13,11 @@ from pathlib import Path
 import matplotlib
 import numpy as np
 
-from calibration.campaigns.uniaxial import SANDSTONE, SCRIPT, SMALL, TESTS, folder_of
+from calibration import generated
 from calibration.campaigns.runs import Runs
+from calibration.campaigns.uniaxial import ROCKS, SCRIPT, SMALL, TESTS, folder_of
 from rockwear.report import plots
 
-ROCKS = {"M": {}, "P": SANDSTONE}
 SPEEDS = [0.4, 0.2, 0.1, 0.05, 0.025, 0.0125]
 SEEDS = 1, 2
 QUANTITIES = {"peak_stress": "strength", "youngs_modulus": "E"}
@@ -73,7 +73,7 @@ def draw(rows):
                                    for name in ("deviation", "low", "high"))
                 axes.errorbar([row["speed"] for row in chosen], mean, [mean - low, high - mean], fmt=style,
                               color=colour, capsize=3, markersize=4, alpha=1 if quantity == "strength" else 0.5,
-                              label=f"{rock}'s bonds, {quantity}")
+                              label=f"[{rock}], {quantity}")
         axes.set(xscale="log", xlabel="speed of each platen, m/s", title=test)
         axes.set_xticks(SPEEDS, [f"{speed:g}" for speed in SPEEDS])
         axes.minorticks_off()
@@ -83,26 +83,30 @@ def draw(rows):
     return figure
 
 
-def markdown(rows):
-    """The table, as lines."""
-    lines = [f"Speed of loading: deviation from {SPEEDS[-1]:g} m/s in %, mean of {len(SEEDS)} packings of 525 discs "
-             f"and their range. The fastest within {100 * TOLERANCE:g} % for every packing: {fastest(rows):g} m/s.", "",
-             "| m/s | " + " | ".join(f"{speed:g}" for speed in SPEEDS) + " |", "|---" * (len(SPEEDS) + 1) + "|"]
-    for rock, test, quantity in dict.fromkeys((row["rock"], row["test"], row["quantity"]) for row in rows):
-        cells = [f"{100 * row['deviation']:+.1f} ({100 * row['low']:+.1f} … {100 * row['high']:+.1f})" for row in rows
-                 if (row["rock"], row["test"], row["quantity"]) == (rock, test, quantity)]
-        lines.append(f"| {rock}'s bonds, {test}, {quantity} | " + " | ".join(cells) + " |")
-    return lines
+def table(rows):
+    """The deviations, as lines of Markdown."""
+    cells = {}
+    for row in rows:
+        cells.setdefault((row["rock"], row["test"], row["quantity"]), []).append(
+            f"{100 * row['deviation']:+.1f} ({100 * row['low']:+.1f} … {100 * row['high']:+.1f})")
+    return ["## Speed of loading", "",
+            f"Deviation from {SPEEDS[-1]:g} m/s in %, mean and range of {len(SEEDS)} packings of 525 discs. The fastest speed "
+            f"within {100 * TOLERANCE:g} % for every packing: {fastest(rows):g} m/s.", "", *generated.table(
+                ["m/s", *(f"{speed:g}" for speed in SPEEDS)],
+                [[f"bonds of [{rock}], {test}, {quantity}", *found] for (rock, test, quantity), found in cells.items()])]
 
 
 def curve(folder):
-    """Run what is missing, draw loading_speed.png, write loading_speed.json. -> lines of a page in Markdown."""
+    """Run what is missing, draw loading_speed.png, write loading_speed.json. -> lines of Markdown."""
     rows = deviations(measure(folder / "runs"))
-    (folder / "loading_speed.json").write_text(json.dumps(rows, indent=1), encoding="utf-8")
+    files = folder / "loading_speed.json", folder / "loading_speed.png"
+    files[0].write_text(json.dumps(rows, indent=1), encoding="utf-8")
     with matplotlib.rc_context(plots.STYLE):
-        draw(rows).savefig(folder / "loading_speed.png")
-    return ["![speed of loading](loading_speed.png)", "", *markdown(rows), ""]
+        draw(rows).savefig(files[1])
+    generated.record(*files)
+    return table(rows)
 
 
 if __name__ == "__main__":
-    print("\n".join(curve(Path(sys.argv[1] if len(sys.argv) > 1 else "out/bench"))))
+    place = Path(sys.argv[1] if len(sys.argv) > 1 else "out/bench")
+    print(generated.write_page(place / "loading_speed.md", curve(place)))

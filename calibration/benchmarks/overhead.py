@@ -1,8 +1,9 @@
-"""What our engines cost on top of YADE's own step: the same stretch of the cut with them alive and dead, in turns.
+"""Cost of the Python engines on top of YADE's own step: the same interval of the cut with and without them, in turns.
 
-    yade -n -x -j1 calibration/benchmarks/overhead.py --out DIR [--name value ...]
+    PYTHONPATH=. yade -n -x -j1 calibration/benchmarks/overhead.py --out DIR [--name value ...]
 
-Both are run five times from one saved state; DIR/overhead.json gets the medians. A YADE script, started by bench.py.
+Both run five times from one saved state ("dead" is YADE's term for an engine that is switched off). Writes the medians into
+DIR/overhead.json. make bench runs it.
 """
 import json
 import os
@@ -44,7 +45,8 @@ def main():
     medians = {kind: median(times) for kind, times in seconds.items()}
     (folder / "overhead.json").write_text(json.dumps({
         "seconds_a_step": seconds, "median": medians, "overhead": medians["alive"] / medians["dead"] - 1,
-        "bonds": len(scene.rock.pairs), "cracks": len(scene.bonds.cracks), "surface": len(scene.tool.erosion.surface)}, indent=1), encoding="utf-8")
+        "bonds": len(scene.rock.pairs), "cracks": len(scene.bonds.cracks),
+        "surface": len(scene.tool.erosion.surface)}, indent=1), encoding="utf-8")
     os._exit(0)
 
 

@@ -1,11 +1,11 @@
-"""Hard cases for the critical time step, each run in YADE on either side of it.
+"""Hard cases for the critical time step, each run in YADE below and above it.
 
-    yade -n -x -j1 calibration/benchmarks/stability_runs.py [--particles n] [--bisect] [--out DIR]
+    PYTHONPATH=. yade -n -x -j1 calibration/benchmarks/stability_runs.py [--particles n] [--bisect] [--out DIR]
 
-Every case is an assembly of bonds that cannot break, without damping but for the dashpots it names. It gets random
-velocities, so small that all stays linear, and every mode the same share of the energy. As long as the scheme is stable
-its kinetic energy then cannot exceed 1/(1 - f) times the first at a fraction f of the critical step; where it is not,
-energy grows exponentially, at 1.05 of the step to three times in a step. The two verdicts are six decades apart.
+Every case is an assembly of unbreakable bonds, without damping except for named dashpots. It starts with random velocities,
+small enough to stay linear, with the same energy in every mode. At a fraction f of the critical step its kinetic energy
+cannot exceed 1/(1 - f) times the initial one; beyond the critical step energy grows exponentially, at 1.05 by a factor of
+three per step. The two results are six decades apart.
 """
 import json
 import math
@@ -19,13 +19,13 @@ from types import SimpleNamespace
 import numpy as np
 from yade import ForceEngine, GlobalStiffnessTimeStepper, InsertionSortCollider, O, utils
 
-from calibration.benchmarks.stability import ABOVE, BELOW, BLOWN_UP
-from rockwear.scenes import yade_scene
-from rockwear.run import parameters
+from calibration.benchmarks.stability import ABOVE, BELOW, UNSTABLE
 from rockwear.engines.softening import UNLIMITED
 from rockwear.kernels.packing import contacts, pack
-from rockwear.kernels.stability import critical_time_step
 from rockwear.kernels.parameter import Parameter, flag, integer, text
+from rockwear.kernels.stability import critical_time_step
+from rockwear.run import parameters
+from rockwear.scenes import yade_scene
 
 PARAMETERS = [
     Parameter("particles", 500, "", integer(50), "in each case, about"),
@@ -34,8 +34,9 @@ PARAMETERS = [
 ]
 DENSITY, RADIUS = 2841.0, 1e-3
 AMPLITUDE = 1e-9
-"""Of a radius: displacement in the first step. Contacts with the tool are pressed in by PRESSED of a radius."""
+"""Displacement in the first step over the radius."""
 PRESSED = 1e-3
+"""Overlap of the contacts with the tool over the tool particle's radius."""
 STEPS = 2000
 
 
@@ -43,8 +44,8 @@ STEPS = 2000
 class Assembly:
     """Particles (n, d) in m, bonds (m, 2) with kn and kt (m,) in N/m, and the contacts of a tool if there is one.
 
-    touched: (k,) particles, each pressed from above by a tool particle of its own; tool_kn, tool_kt in N/m; damping: of
-    these contacts, a fraction of the critical.
+    touched: (k,) particles, each pressed from above by its own tool particle; tool_kn, tool_kt in N/m; damping: of these
+    contacts, a fraction of the critical damping.
     """
 
     positions: np.ndarray
@@ -67,7 +68,7 @@ class Assembly:
         self.dashpots = 2 * self.damping * np.sqrt(self.tool_kn * self.masses[list(self.touched)])
 
     def critical_step(self, **changes):
-        """The kernel's answer (s); changes: of its arguments."""
+        """The kernel's critical time step (s); changes: {argument: other value}."""
         n, k = len(self.positions), len(self.touched)
         tool = np.arange(n, n + k)
         mass, inertia = lumped(np.full(k, self.tool_radius), self.dimensions)
@@ -88,7 +89,7 @@ def lumped(radii, dimensions):
 
 
 def bonded(positions, radii, gap=0.0, kn=20e9, kt=20e9):
-    """All pairs no more than `gap` (m) apart, with a bond."""
+    """All pairs with a gap of at most `gap` (m), bonded."""
     bonds = contacts(positions, radii, gap)
     return Assembly(positions, radii, bonds, np.full(len(bonds), kn), np.full(len(bonds), kt))
 
@@ -112,7 +113,7 @@ def packed(n, ratio=1.5, porosity=0.12, dimensions=2, **options):
 
 
 def with_tiny_particle(n):
-    """A lattice with one disc that fits between three others, in the middle."""
+    """A lattice with one small disc between three others, in the middle."""
     a = lattice(n)
     row = np.flatnonzero(abs(a.positions[:, 1] - np.median(a.positions[:, 1])) < RADIUS)
     hole = a.positions[row[len(row) // 2]] + RADIUS * np.array([1.0, 1 / math.sqrt(3)])
@@ -120,7 +121,7 @@ def with_tiny_particle(n):
 
 
 def touched_by_tool(a, **options):
-    """A tool particle on every disc that has room for it above, and bonds enough not to roll away from under it."""
+    """A tool particle on every disc with free space above it, and with enough bonds not to roll away from it."""
     radius, count = Assembly.tool_radius, np.bincount(a.bonds.ravel(), minlength=len(a.positions))
     free = []
     for i, (x, r) in enumerate(zip(a.positions, a.radii)):
@@ -132,7 +133,7 @@ def touched_by_tool(a, **options):
 
 
 def softened(a, broken=0.0):
-    """Bonds at random fractions of their stiffness, and a part of them without any."""
+    """Bonds at random fractions of their stiffness; a fraction `broken` of them removed."""
     rng = np.random.default_rng(2)
     left = rng.uniform(size=len(a.bonds)) >= broken
     secant = rng.uniform(0.01, 1.0, len(a.bonds))
@@ -155,11 +156,11 @@ CASES = {
     "spheres": lambda n: packed(n, porosity=0.36, dimensions=3),
 }
 INTACT = {"softened bonds": packed, "softened and broken bonds": packed}
-"""Cases that are made of another: its step must be safe for them too."""
+"""Damaged cases, and their intact assemblies: the step of the intact one must be safe for the damaged one too."""
 
 
 def build(a):
-    """Fill YADE's scene with the assembly at rest and in equilibrium. No collider: the contacts are those given."""
+    """Fill YADE's scene with the assembly at rest and in equilibrium. No collider: the contacts are given."""
     O.reset()
     yade_scene.put_rock_materials(mu=1.0)
     yade_scene.put_tool_material(mu=1e3, contact_damping=a.damping)
@@ -188,7 +189,7 @@ def build(a):
     for k, i in enumerate(a.touched):
         utils.createInteraction(i, count + k)
     O.step()
-    # The tool's push is balanced from outside.
+    # An external force balances the tool's contact force.
     push = ForceEngine(ids=list(a.touched), force=(0, a.tool_kn * PRESSED * a.tool_radius, 0))
     O.engines = O.engines[:-1] + [push, O.engines[-1]]
 
@@ -213,8 +214,8 @@ def perturb(a, step):
         body.state.vel, body.state.angVel = (v / math.sqrt(mass)).tolist(), (angular_velocity / math.sqrt(inertia)).tolist()
 
 
-def growth(a, step, steps=STEPS, enough=BLOWN_UP):
-    """Largest kinetic energy over the first in so many steps; ends where it is enough."""
+def growth(a, step, steps=STEPS, enough=UNSTABLE):
+    """Largest kinetic energy over the initial one in `steps` steps; ends once it reaches `enough`."""
     build(a)
     perturb(a, step)
     O.dt, first, largest = step, utils.kineticEnergy(), 1.0
@@ -244,15 +245,15 @@ def choices(a, critical):
     perturb(a, critical)
     O.step()
     chosen["global_stiffness_at_first"] = O.dt
-    # It passes over contacts without force: all have one once the particles have moved.
+    # It ignores contacts without force: all have one once the particles have moved.
     stepper.active, O.dt = False, 1e-3 * critical
     for _ in range(3):
         O.step()
     stepper.active = True
     O.step()
     chosen["global_stiffness"] = O.dt
-    # With viscEl it adds the least 2 m/c of a particle. It may not be asked itself: it takes any contact for a
-    # ViscElPhys and reads from where others have no dashpot.
+    # With viscEl it adds the least 2 m/c of a particle. It is not called with viscEl here: it treats any contact as a
+    # ViscElPhys and would read memory that other contacts do not have.
     if a.damping:
         viscous = 2 * stepper.timestepSafetyCoefficient * (a.masses[list(a.touched)] / a.dashpots).min()
         chosen["global_stiffness_viscous"] = min(chosen["global_stiffness"], viscous)
@@ -260,7 +261,7 @@ def choices(a, critical):
 
 
 def examine(name, particles, bisect):
-    """All about a case."""
+    """{quantity: value} of a case."""
     a = CASES[name](particles)
     critical = a.critical_step()
     found = {"particles": len(a.positions), "bonds": len(a.bonds), "touched": len(a.touched), "critical_step": critical,

@@ -1,23 +1,34 @@
 """Scenes run in processes of their own, so many at a time, each into its folder."""
+import os
 import subprocess
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-from rockwear.run.checkpoint import digest
+from calibration.generated import ROOT
 from rockwear.report.folder import RunFolder
-
-ROOT = Path(__file__).resolve().parents[2]
+from rockwear.run.checkpoint import digest
 
 
 class RunFailed(RuntimeError):
-    """A scene ended with an exit code other than 0."""
+    """A YADE script ended with an exit code other than 0."""
+
+
+def run_script(script, folder, words=()):
+    """Run a YADE script (a path from the root of the repository) into `folder`. Raises RunFailed."""
+    done = subprocess.run(["yade", "-n", "-x", "-j1", str(ROOT / script), "--out", str(folder), *words],
+                          env={**os.environ, "PYTHONPATH": str(ROOT)}, capture_output=True, encoding="utf-8",
+                          stdin=subprocess.DEVNULL)
+    if done.returncode:
+        said = done.stderr.strip().splitlines() or ["nothing said"]
+        errors = [line for line in said if line.startswith("error: ")]
+        raise RunFailed(f"{Path(folder).name} ended with {done.returncode}: {(errors or said)[-1]}")
 
 
 class Runs:
     """Runs in subfolders of `folder`, `at_once` at a time.
 
-    With `keep`, those that ended well with the same values, and the same files, stay as they are. Use it as a context: an exception within
-    lets the runs under way end, and starts no others.
+    With `keep`, runs that finished with the same values and the same input files are not repeated. Use it as a context:
+    an exception within it waits for the runs under way and starts no others.
     """
 
     def __init__(self, folder, *, at_once=2, keep=False):
@@ -33,7 +44,7 @@ class Runs:
     def start(self, name, script, **values):
         """Queue a run of `script` (a path from the root of the repository). -> Future of its RunFolder.
 
-        The future raises RunFailed where the scene does not end well.
+        The future raises RunFailed where the run fails.
         """
         return self.pool.submit(self._run, self.folder / name, script, values)
 
@@ -43,17 +54,12 @@ class Runs:
         words = [word for name, value in values.items() for word in (f"--{name}", str(value))]
         if self.keep and (folder / "checkpoint").exists() and not (folder / "summary.json").exists():
             words.append("--resume")
-        done = subprocess.run(["yade", "-n", "-x", "-j1", str(ROOT / script), "--out", str(folder), *words],
-                              capture_output=True, encoding="utf-8", stdin=subprocess.DEVNULL)
-        if done.returncode:
-            said = done.stderr.strip().splitlines() or ["nothing said"]
-            errors = [line for line in said if line.startswith("error: ")]
-            raise RunFailed(f"{folder.name} ended with {done.returncode}: {(errors or said)[-1]}")
+        run_script(script, folder, words)
         return RunFolder(folder)
 
 
 def finished(folder, values):
-    """True for a folder with the summary of a run that ended well, with these values and these files."""
+    """True for a folder with the summary of a run that finished, with these values and the same input files."""
     try:
         summary = RunFolder(folder).summary
         parameters = summary["parameters"]

@@ -1,11 +1,11 @@
-"""Sharp and worn: what a tooth's wear does to the cut.
+"""Sharp and worn: the effect of a tooth's wear on the cut.
 
     python3 -m calibration.campaigns.sharp_and_worn WORN_RUN DIR [SEED ...]
 
-WORN_RUN is the folder of a finished run of a wearing tooth (make campaign-wear leaves some). Its outline when new and at
-equal steps of its mass loss becomes a tooth that wears no more; each cuts the same fresh specimens at the same depth, one
-packing a seed. Leaves in DIR the outlines, the runs (finished ones stay), sharp_and_worn.csv, a figure and a page: cutting
-and thrust force, specific energy and chip size against the mass lost, beside Evans and Nishimatsu.
+WORN_RUN is the folder of a finished run of a wearing tooth (make campaign-wear writes some). Its outlines, new and at equal
+steps of its mass loss, become teeth without wear; each cuts the same fresh specimens at the same depth, one packing for
+each seed. Writes into DIR the outlines, the runs (finished ones are kept), sharp_and_worn.csv and .md, a figure and a page:
+cutting and thrust force, specific energy and chip size against the mass lost, beside the theories of Evans and Nishimatsu.
 """
 import math
 import sys
@@ -14,23 +14,25 @@ from pathlib import Path
 import matplotlib
 import numpy as np
 
+from calibration import generated
 from calibration.campaigns.runs import RunFailed, Runs
 from calibration.campaigns.two_tools import scatter
+from calibration.campaigns.uniaxial_tables import write_csv
 from rockwear.kernels import cutting_theory
 from rockwear.kernels.checks import ParameterError, require
 from rockwear.report import cutting, page, plots, shapes
 from rockwear.report.folder import RunFolder
 
 SHAPES = 4
-"""The new tooth and so many minus one worn ones."""
+"""Number of outlines, the new one included."""
 SEEDS = 1, 2, 3, 4
-"""The same cut of the same packing, on another way from its first contacts on, differs by a third."""
+"""Several packings, because a single cut is known to a third only: after its first contacts it may take another course."""
 CUT = dict(cycles=0, start_up=0.012, wear_acceleration=0, heat="false", grading_factor=3)
 """48 mm of cut at 4 m/s in graded rock; no wear, no heat."""
 ROCK_OF_THE_CUT = ("velocity depth_of_cut kn kt Rn Rt mu tool_kn tool_kt tool_mu contact_damping bond_law H tool_radius_min "
                    "tool_radius_max").split()
 STRENGTH = {"compressive_strength": 164e6, "tensile_strength": 30.4e6}
-"""Of M's rock in our laboratory (calibration/results/uniaxial.md)."""
+"""Pa; of the rock of [Rojek 2003, 5.1] in the virtual laboratory (calibration/results/uniaxial.md)."""
 QUANTITIES = {"mean_cutting_force": ("mean cutting force", "N/m"), "peak_cutting_force": ("peak cutting force", "N/m"),
               "mean_thrust_force": ("mean thrust force", "N/m"),
               "specific_energy": ("specific energy", "J/m3"), "chip_size": ("median chip, by mass", "m")}
@@ -45,13 +47,13 @@ def stages(run):
 
 
 def outline(run, shot):
-    """(k, 2) m: what is left of the tooth, its lowest point at y = 0."""
+    """(k, 2) m: outline of the worn tooth, its lowest point at y = 0."""
     polygon = max(cutting.tool_outlines(run, shot), key=len)
     return polygon - [0.0, polygon[:, 1].min()]
 
 
 def effective_rake(polygon, depth):
-    """Angle (rad) from the vertical of the line from the tip to where the front leaves the rock; negative when blunt."""
+    """Angle (rad) from the vertical of the line from the tip to the front at the rock's surface; negative when blunt."""
     following = np.roll(polygon, -1, axis=0)
     through = (polygon[:, 1] < depth) != (following[:, 1] < depth)
     (x, y), (x_next, y_next) = polygon[through].T, following[through].T
@@ -60,7 +62,7 @@ def effective_rake(polygon, depth):
 
 
 def chip_size(run):
-    """Diameter (m) of the disc of a chip's area, the median by mass over all chips of more than one disc."""
+    """Equivalent diameter (m) of a chip's area, the median by mass over all chips of more than one disc."""
     shot, model = run.snapshot(-1), run.model
     loose = shapes.chips(len(model["rock_radii"]), model["bonds"], shot["status"] == 0, model["rock_fixed"])
     number = shapes.pieces(len(model["rock_radii"]), model["bonds"], shot["status"] == 0)
@@ -114,7 +116,7 @@ def figure(teeth, rows):
         axes.errorbar(np.unique(lost), middle, error, color="#444444", capsize=3, label="mean, its standard error")
         axes.set(title=label, xlabel="mass lost / %", ylabel=shown, ylim=(0, 1.1 * np.nanmax(values)))
         if name == "peak_cutting_force":
-            # The theories are of the force at which a chip breaks off, and far from it for a blunt tool.
+            # The theories give the force at which a chip breaks off; for a blunt tool they are far from the peak.
             for theory_name, style in (("Evans", "s:"), ("Nishimatsu", "^--")):
                 axes.plot([100 * tooth["lost"] for tooth in teeth], [factor * tooth[theory_name] for tooth in teeth], style,
                           markersize=4, color="#2c6e91", label=theory_name)
@@ -125,7 +127,7 @@ def figure(teeth, rows):
 
 
 def main(worn_run, folder, seeds=SEEDS):
-    """Run what is missing, and write the page."""
+    """Run the missing cuts, and write tables, figure and page."""
     folder, run = Path(folder), RunFolder(worn_run)
     require({"tool_volumes", "rock_radii"} <= set(run.model) and len(run.times), "WORN_RUN", str(worn_run),
             "the folder of a cut in the plane with a tool of particles")
@@ -144,32 +146,33 @@ def main(worn_run, folder, seeds=SEEDS):
                 for seed in seeds for number, tooth in enumerate(teeth)}
         rows = [{"tooth": number, "lost": teeth[number]["lost"], "seed": seed, **measure(future.result())}
                 for (number, seed), future in cuts.items()]
-    lines = [",".join(rows[0])] + [",".join(f"{value:.6g}" for value in row.values()) for row in rows]
-    (folder / "sharp_and_worn.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
+    write_csv(folder / "sharp_and_worn.csv", rows)
     write_page(folder, teeth, rows)
 
 
 def write_page(folder, teeth, rows):
-    """report.html with the figure and a table, and the figure as a file."""
+    """sharp_and_worn.png, the table as sharp_and_worn.md, and report.html with both."""
     with matplotlib.rc_context(plots.STYLE):
         drawn = figure(teeth, rows)
         path = folder / "sharp_and_worn.png"
         drawn.savefig(path)
-    table = []
+    cuts = []
     for number, tooth in enumerate(teeth):
         of = [row for row in rows if row["tooth"] == number]
         cells = []
         for name, (_, unit) in QUANTITIES.items():
             middle, error = scatter(np.array([row[name] for row in of]))
             cells.append(f"{page.quantity(middle, unit)} ± {page.percent(error, middle)}")
-        table.append([f"{100 * tooth['lost']:.1f} % lost", f"{math.degrees(tooth['rake']):.0f}°", *cells,
+        cuts.append([f"{100 * tooth['lost']:.1f} % lost", f"{math.degrees(tooth['rake']):.0f}°", *cells,
                       *(page.quantity(tooth[name], "N/m") for name in ("Evans", "Nishimatsu"))])
     header = ("tooth", "effective rake", *(label for label, _ in QUANTITIES.values()), "Evans", "Nishimatsu")
     (folder / "report.html").write_text(page.document("sharp and worn", f"{len(rows)} cuts", [page.Section(
-        "What wear does to the cut", "The same specimens cut at the same depth by the tooth as it was new and as it wore; "
-        "± is the standard error of the mean over packings. The theories are of the force at which a chip breaks off, beside the "
-        "peak, and take the rake of the line from the lowest point to where the front leaves the rock, and the laboratory's "
-        "strengths.", [page.image(path), page.table(table, header)])]), encoding="utf-8")
+        "Effect of wear on the cut", "The same specimens cut at the same depth by the new tooth and by its worn outlines; "
+        "± is the standard error of the mean over packings. The theories give the force at which a chip breaks off, to be "
+        "compared with the peak. They take the rake of the line from the lowest point to the front at the rock's surface, and "
+        "the strengths of the virtual laboratory.", [page.image(path), page.table(cuts, header)])]), encoding="utf-8")
+    generated.write_page(folder / "sharp_and_worn.md", generated.table(header, cuts))
+    generated.record(path, folder / "sharp_and_worn.csv", folder / "report.html")
 
 
 if __name__ == "__main__":

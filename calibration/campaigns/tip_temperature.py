@@ -1,11 +1,13 @@
-"""What the tip's temperature depends on: what the sources leave open, one at a time, in one figure.
+"""Sensitivity of the tip's temperature: parameters that the publications leave open, one at a time, in one figure.
 
     python3 -m calibration.campaigns.tip_temperature DIR [--quick]
 
-Particle size at the tool's surface, conductance between particles, from tool to rock and to air or water, sharing of
-friction heat, and the speed at which the mechanics are run, each from its low to its high choice, against the scatter
-over packings. --quick takes rock discs twice as large (a tenth of the time, and fewer contacts at the tip).
-A scene is a row of SCENES: its script, its values, and the temperatures (K) among its results.
+Particle size at the tool's surface; conductance between particles, from tool to rock, and to air or water; sharing of
+friction heat; loading speed. Each goes from its low to its high choice, beside the scatter over packings. --quick takes
+rock discs twice as large (a tenth of the time, and fewer contacts at the tip). Writes a figure, tip_temperature.md,
+a JSON file for each scene and provenance.json into DIR.
+
+SCENES lists for each scene its script, its values, and the temperatures (K) among its results.
 """
 import json
 import sys
@@ -13,6 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
+from calibration import generated
 from calibration.campaigns.runs import Runs
 from rockwear.report import plots
 
@@ -20,17 +23,17 @@ RIPPER = dict(velocities=0.4, wear_passes=0, report="false", snapshot_period=1, 
 QUICK = dict(radius_min=2e-3, radius_max=3e-3, Rn=0.2e6, Rt=2e6)
 """Twice the discs at the same macroscopic strength."""
 SCENES = {"ripper at 0.4 m/s": ("yade_scripts/ripper_temperature.py", RIPPER, {
-    "after a pass": "hottest_after_the_pass_0.4", "quasi-stationary, root held": "hottest_fixed_root_0.4",
-    "quasi-stationary, root insulated": "hottest_insulated_root_0.4"})}
+    "after a pass": "hottest_after_the_pass_0.4", "quasi-stationary, shank held": "hottest_fixed_root_0.4",
+    "quasi-stationary, shank insulated": "hottest_insulated_root_0.4"})}
 
 
 def size(radius):
-    """Tool discs of so many metres, within a fifth."""
+    """Tool discs of this radius (m), within a fifth."""
     return dict(tool_radius_min=0.8 * radius, tool_radius_max=1.2 * radius)
 
 
 def loading(factor):
-    """The mechanics so many times as fast, over the same way."""
+    """The mechanics `factor` times as fast, over the same distance."""
     return dict(velocity=4.0 * factor, start_up=0.005 / factor, cycle_time=0.004 / factor, heat_period=1e-4 / factor,
                 record_period=2e-5 / factor)
 
@@ -45,11 +48,11 @@ OPEN = {
     "sharing of friction heat": {"equal": {}, "effusivity": dict(heat_sharing="effusivity")},
     "loading speed": {"8 m/s": loading(2), "4 m/s": {}, "1 m/s": loading(0.25)},
 }
-"""{what is open: {choice: values}}; without values it is the scene's default, run once."""
+"""{parameter: {choice: values}}; a choice without values is the scene's default, which runs once."""
 
 
 def measure(folder, scene, quick=False, at_once=2):
-    """{what is open: {choice: {temperature: rise in K}}} of a scene; finished runs are kept."""
+    """{parameter: {choice: {temperature: rise in K}}} of a scene; finished runs are kept."""
     script, values, temperatures = SCENES[scene]
     values = {**values, **(QUICK if quick else {})}
     with Runs(folder, at_once=at_once, keep=True) as runs:
@@ -58,6 +61,7 @@ def measure(folder, scene, quick=False, at_once=2):
                                            **{**values, **change}) if change else default
                 for what, choices in OPEN.items() for choice, change in choices.items()}
         found = {key: job.result() for key, job in jobs.items()}
+
     def rise(run, result):
         return run.result(result) - run.parameter("tool_temperature", 0.0)
 
@@ -65,8 +69,8 @@ def measure(folder, scene, quick=False, at_once=2):
                    for choice in choices} for what, choices in OPEN.items()}
 
 
-def together(rises):
-    """[(K, names)] of {name: K} in rising order, those within an eighth of each other as one, whose names would overlap."""
+def merged(rises):
+    """[(K, names)] of {name: K} in rising order, values within an eighth of each other as one, so that labels keep apart."""
     found = []
     for name, rise in sorted(rises.items(), key=lambda entry: entry[1]):
         if found and rise < 1.125 * found[-1][0]:
@@ -77,7 +81,7 @@ def together(rises):
 
 
 def draw(scene, measured):
-    """A panel a temperature: a bar from the lowest to the highest rise, a mark a choice."""
+    """A panel for each temperature: a bar from the lowest to the highest rise, a mark for each choice."""
     names = list(next(iter(next(iter(measured.values())).values())))
     figure, panels = plots.canvas(5 * len(names), 0.8 + 0.75 * len(measured), 1, len(names), sharey=True)
     for axes, name in zip(panels, names):
@@ -86,7 +90,7 @@ def draw(scene, measured):
             colour = "0.55" if "scatter" in what else "#b5541c"
             axes.barh(row, np.ptp(rises), left=rises.min(), height=0.25, color=colour, alpha=0.5)
             axes.plot(rises, np.full(len(rises), row), "|", color=colour, markersize=14, markeredgewidth=2)
-            for k, (rise, names_of_it) in enumerate(together(dict(zip(choices, rises)))):
+            for k, (rise, names_of_it) in enumerate(merged(dict(zip(choices, rises)))):
                 axes.text(rise, row + (0.2 if k % 2 else -0.2), ", ".join(names_of_it), ha="center", fontsize=7,
                           va="top" if k % 2 else "bottom")
         every = [choice[name] for choices in measured.values() for choice in choices.values()]
@@ -94,21 +98,32 @@ def draw(scene, measured):
                  xlim=(min(every) / 1.5, max(every) * 1.5))
     panels[0].set_yticks(range(len(measured)), list(measured))
     panels[0].set_ylim(len(measured) - 0.4, -0.6)
-    figure.suptitle(f"{scene}: what the tip's temperature depends on")
+    figure.suptitle(f"{scene}: sensitivity of the tip's temperature")
     return figure
 
 
+def table(scene, measured):
+    """Rises in K, as lines of Markdown."""
+    names = SCENES[scene][2]
+    return [f"## {scene}: rise of the hottest particle, K", "", *generated.table(
+        ["parameter", "choice", *names],
+        [[what, choice, *(f"{rises[name]:.3g}" for name in names)] for what, choices in measured.items()
+         for choice, rises in choices.items()])]
+
+
 def main(folder, quick):
-    """Measure every scene and write a figure and the numbers of each."""
+    """Measure every scene; write a figure and the numbers of each."""
     folder.mkdir(parents=True, exist_ok=True)
+    lines = []
     for scene in SCENES:
         place = folder / scene.replace(" ", "_").replace("/", "_")
         measured = measure(place, scene, quick)
-        (folder / f"{place.name}.json").write_text(json.dumps(measured, indent=1), encoding="utf-8")
-        draw(scene, measured).savefig(folder / f"{place.name}.png", dpi=110)
-        for what, choices in measured.items():
-            for choice, rises in choices.items():
-                print(f"{what:32s} {choice:16s}", *(f"{name}: {rise:.3g} K;" for name, rise in rises.items()))
+        files = folder / f"{place.name}.json", folder / f"{place.name}.png"
+        files[0].write_text(json.dumps(measured, indent=1), encoding="utf-8")
+        draw(scene, measured).savefig(files[1], dpi=110)
+        generated.record(*files)
+        lines += table(scene, measured)
+    print(generated.write_page(folder / "tip_temperature.md", lines))
 
 
 if __name__ == "__main__":

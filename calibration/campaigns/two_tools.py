@@ -1,25 +1,17 @@
-"""The same cut with a tool of particles and with one of segments: worn volume, and where along the tool it falls.
+"""The same cut with a tool of particles and with one of segments: worn volume, and its distribution along the tool.
 
     python3 -m calibration.campaigns.two_tools FIGURE.png FOLDER [FOLDER ...]
 
-reads run folders of yade_scripts/tooth_cycles.py with --tool particles and --tool segments, some seeds each, and draws
-the figure (calibration/results/two_tools.png is one). M 9.2's tooth, 3 ms, grading_factor 3, no heat, five seeds, friction on the tool over its work:
-
-    particles  shape kept (--removal none)   9.3 +- 1.2 %      segments  shape kept (--reshape false)  10.5 +- 2.0 %
-               7000 times                    7.5 +- 1.2 %                70 times                      10.4 +- 2.3 %
-                                                                         700 times                      7.6 +- 1.7 %
-                                                                         7000 times                     3.9 +- 0.5 %
-
-So the two tools are one while they keep their shape (make validate looks again, over three seeds). A face of segments
-recedes with every update, away from what presses on it, and at 7000 times by several times the way that rock slides on it
-(result recession_per_slip): the contact is relieved and the wear is no longer proportional to the acceleration. Particles
-keep their place until they are worn away.
+Reads run folders of yade_scripts/tooth_cycles.py with --tool particles and --tool segments, several seeds each, draws the
+figure and writes a table of the same name (.md) beside it. calibration/results/facet_tools.md states the result.
 """
 import sys
+from pathlib import Path
 
 import matplotlib
 import numpy as np
 
+from calibration import generated
 from rockwear.kernels.checks import ParameterError, require
 from rockwear.kernels.polygon import contour, nearest_arc
 from rockwear.kernels.wear_statistics import PLACE
@@ -27,14 +19,14 @@ from rockwear.report import plots, shapes
 from rockwear.report.folder import RunFolder
 
 KEPT = 20.0
-"""Where runs whose tool keeps its shape stand on the axis of acceleration."""
+"""Place of runs with a constant tool shape on the axis of wear_acceleration."""
 COLOURS = {"particles": "#2c6e91", "segments": "#cc1414"}
 EDGES = np.arange(-6e-3, 24e-3, PLACE)
 """m; of the places along the new outline, from the tip up the front."""
 
 
 def description(run):
-    """(tool, acceleration), the second 0 where the tool keeps its shape."""
+    """(tool, wear_acceleration), the second 0 where the tool keeps its shape."""
     tool, values = run.parameters["tool"], run.parameters
     moves = values["reshape"] if tool == "segments" else values["removal"] != "none"
     return tool, values["wear_acceleration"] if moves else 0.0
@@ -47,7 +39,7 @@ def share_of_friction(run):
 
 
 def worn_once(run):
-    """m2 worn, were it not accelerated."""
+    """m2 worn, over wear_acceleration."""
     return run.result("worn_volume") / run.parameters["wear_acceleration"]
 
 
@@ -81,7 +73,7 @@ def scatter(values):
 
 
 def figure(groups):
-    """Friction against acceleration, and where the wear falls on tools that keep their shape."""
+    """Friction against wear_acceleration, and the distribution of wear on tools that keep their shape."""
     drawn, (left, right) = plots.canvas(11, 4, 1, 2)
     for (tool, factor), runs in groups.items():
         shares = 100 * np.array([share_of_friction(run) for run in runs])
@@ -92,17 +84,17 @@ def figure(groups):
             depth = np.mean([profile(run) for run in runs], axis=0)
             right.step(plots.MM * (EDGES[1:] + EDGES[:-1]) / 2, 100 * depth / (plots.MM * PLACE * depth.sum()), where="mid",
                        color=COLOURS[tool], label=f"{tool}, {len(runs)} seeds")
-    left.set(xscale="log", xlabel="acceleration; leftmost: the shape is kept", ylim=(0, None),
+    left.set(xscale="log", xlabel="wear acceleration; leftmost: constant shape", ylim=(0, None),
              ylabel="friction on the tool / % of its work", title="each seed, mean and its standard error")
     right.set(xlabel="arc length from the tip, up the front / mm", ylabel="share of the wear / % per mm",
-              title="where wear falls, the shape kept")
+              title="distribution of wear, constant shape")
     for axes in (left, right):
         axes.legend()
     return drawn
 
 
 def read(folder):
-    """The run in a folder. Raises OSError, or ParameterError where it is none of these."""
+    """The run in a folder. Raises OSError, or ParameterError where it is of another scene."""
     run = RunFolder(folder)
     require({"tool", "reshape", "removal"} <= set(run.parameters) and "outline" in run.model, "FOLDER", str(folder),
             "the folder of a run of tooth_cycles.py")
@@ -110,15 +102,20 @@ def read(folder):
 
 
 def main(path, folders):
-    """Draw the figure at `path` and print a line a group."""
-    groups = grouped(map(read, folders))
+    """Draw the figure at `path`, and write and print a table with a row for each group."""
+    path, groups = Path(path), grouped(map(read, folders))
+    rows = []
     for (tool, factor), runs in groups.items():
         share, its_error = scatter([100 * share_of_friction(run) for run in runs])
         worn, error = scatter([1e12 * worn_once(run) for run in runs])
-        print(f"{tool}, {f'{factor:g} times' if factor else 'shape kept'}: friction {share:.3g} +- {its_error:.2g} % of the "
-              f"tool's work, worn at 1 times {worn:.3g} +- {error:.2g} um2, {len(runs)} seeds")
+        rows.append([tool, f"{factor:g}" if factor else "constant shape", f"{share:.3g} ± {its_error:.2g}",
+                     f"{worn:.3g} ± {error:.2g}", len(runs)])
     with matplotlib.rc_context(plots.STYLE):
         figure(groups).savefig(path, dpi=80)
+    generated.record(path)
+    print(generated.write_page(path.with_suffix(".md"), generated.table(
+        ["tool", "wear acceleration", "friction on the tool, % of its work", "worn volume over wear acceleration, µm²",
+         "seeds"], rows)))
 
 
 if __name__ == "__main__":

@@ -1,10 +1,10 @@
-"""Campaigns of the virtual laboratory: M's three laws, and what P's sandstone depends on.
+"""Campaigns of the virtual laboratory: three bond laws, and the parameters that a sandstone's strength depends on.
 
     python3 -m calibration.campaigns.uniaxial DIR [CAMPAIGN ...] [--read]
 
-Two runs at a time, a folder a run; runs that are finished stay as they are, so that a stopped campaign goes on. --read
-starts none, and shows what is there. Leaves in DIR uniaxial.csv (strengths and moduli by case and packing),
-stress_strain.csv, tables.md and the figures.
+Two runs at a time, a folder a run; finished runs are not repeated, so that an interrupted campaign resumes. --read starts
+no run and evaluates those that exist. Writes into DIR uniaxial.csv (strengths and moduli by case and packing),
+stress_strain.csv, uniaxial.md (tables), the figures and provenance.json.
 """
 import math
 import sys
@@ -12,34 +12,39 @@ from collections import defaultdict
 from pathlib import Path
 
 import matplotlib
-import numpy as np
 
+from calibration import generated
 from calibration.campaigns import uniaxial_figures as figures
+from calibration.campaigns import uniaxial_tables as tables
 from calibration.campaigns.runs import RunFailed, Runs
+from calibration.campaigns.uniaxial_tables import TESTS
 from rockwear.report import plots
 from rockwear.report.folder import RunFolder
 
 SCRIPT = "yade_scripts/uniaxial.py"
-TESTS = "compression", "tension"
 
 SMALL = dict(width=0.0545, height=0.0545)
-"""A quarter of M's specimen, 525 discs: an eighth of the cost of a test."""
+"""A quarter of the specimen of [Rojek 2003, 5.1], 525 discs: an eighth of the cost of a test."""
 
-PLASTIC = dict(law="plastic", Rn=0.04e6, Rt=0.16e6)
-MAIN = {"brittle": {}, "damage 2e11": dict(law="damage", H=2e11), "plastic 1e10": dict(PLASTIC, H=1e10)}
-"""M's three laws as in M fig. 5.2; brittle and damage bonds have M's Rn = 0.1e6, Rt = 1e6."""
-SOFTENING = {"damage 2e10": dict(law="damage", H=2e10), "damage 5e9": dict(law="damage", H=5e9),
-             "damage 2e9": dict(law="damage", H=2e9), "plastic 2e10": dict(PLASTIC, H=2e10),
+PLASTIC = dict(bond_law="plastic", Rn=0.04e6, Rt=0.16e6)
+MAIN = {"brittle": {}, "damage 2e11": dict(bond_law="damage", H=2e11), "plastic 1e10": dict(PLASTIC, H=1e10)}
+"""The three laws of [Rojek 2003, fig. 5.2]; brittle and damage bonds have its Rn = 0.1e6, Rt = 1e6."""
+SOFTENING = {"damage 2e10": dict(bond_law="damage", H=2e10), "damage 5e9": dict(bond_law="damage", H=5e9),
+             "damage 2e9": dict(bond_law="damage", H=2e9), "plastic 2e10": dict(PLASTIC, H=2e10),
              "plastic 5e9": dict(PLASTIC, H=5e9), "plastic 2e9": dict(PLASTIC, H=2e9)}
-"""The other curves of M figs. 5.6 and 5.10."""
+"""The other curves of [Rojek 2003, figs. 5.6 and 5.10]."""
 
 SPEED = dict(speed=0.1)
-"""Of loading: up to 4 % too strong (see loading_speed), less than the scatter, at half the cost of the default."""
+"""Of loading: strengths up to 4 % too high (see loading_speed), less than the scatter, at half the cost of the default."""
 
 SANDSTONE = dict(kn=20e9, kt=4e9, Rn=0.1e6, Rt=0.1e6, mu=0.8)
-"""P 5.2."""
+"""[Rojek 2014, 5.2]."""
+ROCKS = {"Rojek 2003": {}, "Rojek 2014": SANDSTONE}
+"""Two sets of bonds: strong in shear, and Rt = Rn with kt = kn/5."""
+PUBLISHED = "Rojek 2014"
+"""Case with the published parameters as they are."""
 FACTORS = {
-    "P's numbers": {},
+    PUBLISHED: {},
     "no rotation": dict(rotation="blocked"),
     "bonding gap 0": dict(bonding_gap=0), "bonding gap 0.05 mm": dict(bonding_gap=5e-5),
     "bonding gap 0.2 mm": dict(bonding_gap=2e-4),
@@ -53,9 +58,9 @@ FACTORS = {
     "100 x 50 mm": dict(width=0.1, height=0.05),
     "speed 0.025 m/s": dict(speed=0.025), "speed 0.4 m/s": dict(speed=0.4),
     "damping 0.1": dict(damping=0.1), "damping 0.7": dict(damping=0.7),
-    "damage, H = 2e9": dict(law="damage", H=2e9), "plastic, H = 1e10": dict(law="plastic", H=1e10),
+    "damage, H = 2e9": dict(bond_law="damage", H=2e9), "plastic, H = 1e10": dict(bond_law="plastic", H=1e10),
 }
-"""One change at a time to P's set."""
+"""One change at a time to the set of [Rojek 2014]."""
 
 COMBINED = {
     "no rotation, Rt doubled": dict(rotation="blocked", Rt=0.2e6),
@@ -65,35 +70,35 @@ COMBINED = {
     "Rt tenfold, gap 0.2 mm": dict(Rt=1e6, bonding_gap=2e-4),
     "Rt tenfold, kt = 0.4 kn": dict(Rt=1e6, kt=8e9),
 }
-"""Several changes, towards the strengths that P states."""
+"""Several changes, towards the strengths of [Rojek 2014]."""
 
 CLOSEST = {
     "discs free to turn": dict(kn=18.5e9, kt=8.4e9, Rn=0.04e6, Rt=0.4e6, mu=0.8, speed=0.04),
     "no rotation": dict(kn=17.7e9, kt=6.9e9, Rn=0.022e6, Rt=0.058e6, mu=0.8, rotation="blocked", speed=0.025,
                         strain_max=0.006),
 }
-"""Sets that come near all that P says of its rock. A rock of less strength strains less until it fails, and is loaded
-as much more slowly."""
+"""Sets close to the rock of [Rojek 2014, 5.1]. A rock of less strength strains less until it fails, and is loaded more
+slowly in proportion."""
 
 CAMPAIGNS = {
     "laws": (MAIN, SPEED, (1, 2, 3, 4, 5)),
     "softening": (SOFTENING, SPEED, (1,)),
     "small": ({**MAIN, **SOFTENING}, {**SMALL, **SPEED}, (1, 2, 3, 4, 5)),
-    "sandstone": ({"P's numbers": {}}, {**SANDSTONE, **SPEED}, (1, 2, 3, 4, 5)),
+    "sandstone": ({PUBLISHED: {}}, {**SANDSTONE, **SPEED}, (1, 2, 3, 4, 5)),
     "closest": (CLOSEST, {}, (1, 2, 3)),
     "closest_small": (CLOSEST, SMALL, (1, 2, 3)),
     "combined": (COMBINED, {**SANDSTONE, **SMALL, **SPEED}, (1, 2, 3)),
     "factors": (FACTORS, {**SANDSTONE, **SMALL, **SPEED}, (1, 2, 3)),
 }
 """{campaign: (cases, what they have in common, seeds)}; each case in both tests."""
-TITLES = {"laws": "M's laws, 2100 discs", "softening": "other slopes, 2100 discs", "small": "all laws, 525 discs",
-          "sandstone": "P's sandstone, 2100 discs", "closest": "sets near P's rock, 2100 discs",
-          "closest_small": "sets near P's rock, 525 discs",
-          "combined": "P's sandstone, several changes, 525 discs",
-          "factors": "P's sandstone, one change at a time, 525 discs"}
+TITLES = {"laws": "three laws, 2100 discs", "softening": "other slopes, 2100 discs", "small": "all laws, 525 discs",
+          "sandstone": "sandstone of [Rojek 2014], 2100 discs", "closest": "sets close to this rock, 2100 discs",
+          "closest_small": "sets close to this rock, 525 discs",
+          "combined": "sandstone of [Rojek 2014], several changes, 525 discs",
+          "factors": "sandstone of [Rojek 2014], one change at a time, 525 discs"}
 
-P_ROCK = {"E, GPa": 18, "ν": 0.18, "UCS, MPa": 60, "σt, MPa": 7, "UCS/σt": 60 / 7}
-"""What P 5.1 says of the rock."""
+MEASURED_ROCK = {"E, GPa": 18, "ν": 0.18, "UCS, MPa": 60, "σt, MPa": 7, "UCS/σt": 60 / 7}
+"""The sandstone that [Rojek 2014, 5.1] reports."""
 
 
 def folder_of(case, test, seed):
@@ -110,85 +115,12 @@ def start(runs, campaign):
 
 
 def found(folder, campaign):
-    """{(case, test, seed): RunFolder} of a campaign's runs that are there."""
+    """{(case, test, seed): RunFolder} of a campaign's runs that exist."""
     cases, _, seeds = CAMPAIGNS[campaign]
     places = {(case, test, seed): folder / campaign / folder_of(case, test, seed)
               for case in cases for test in TESTS for seed in seeds}
     return {key: RunFolder(place) for key, place in places.items() if (place / "summary.json").exists()}
 
-
-# ---- tables
-
-def statistics(rows, scale=1.0):
-    """(mean, standard deviation, number) of values."""
-    values = scale * np.array(rows)
-    return values.mean(), values.std(ddof=1) if len(values) > 1 else math.nan, len(values)
-
-
-def shown(values, scale=1.0, digits=1):
-    """Mean ± standard deviation."""
-    if not values:
-        return "–"
-    mean, deviation, count = statistics(values, scale)
-    return f"{mean:.{digits}f}" + (f" ± {deviation:.{digits}f}" if count > 1 else "")
-
-
-def table(header, rows):
-    """Lines of Markdown."""
-    return [f"| {' | '.join(header)} |", "|---" * len(header) + "|", *(f"| {' | '.join(row)} |" for row in rows), ""]
-
-
-def strengths(rows):
-    """One line a case: packings, UCS, tensile strength, their ratio, E, nu, cracks at the peak, localisation."""
-    lines = []
-    for case in dict.fromkeys(row["case"] for row in rows):
-        compressed, pulled = ([row for row in rows if (row["case"], row["test"]) == (case, test)] for test in TESTS)
-        pull = {row["seed"]: row["peak_stress"] for row in pulled}
-        ratios = [row["peak_stress"] / pull[row["seed"]] for row in compressed if row["seed"] in pull]
-        open_ended = sum(not row["failed"] for row in compressed)
-        lines.append([case, str(len(compressed)),
-                      shown([row["peak_stress"] for row in compressed], 1e-6) + (
-                          f" ({open_ended} not failed)" if open_ended else ""),
-                      shown([row["peak_stress"] for row in pulled], 1e-6), shown(ratios, 1, 2),
-                      shown([row["youngs_modulus"] for row in pulled], 1e-9),
-                      shown([row["poissons_ratio"] for row in pulled], 1, 3),
-                      shown([row["peak_strain"] for row in compressed], 100, 2),
-                      shown([row["tensile_cracks_at_peak"] + row["shear_cracks_at_peak"] for row in compressed], 1, 0),
-                      shown([100 * row["localised"] for row in compressed], 1, 0)])
-    return table(["case", "packings", "UCS, MPa", "tensile strength, MPa", "UCS/σt", "E, GPa", "ν", "strain at UCS, %",
-                  "cracks at UCS", "% of cracks in the densest fifth"], lines)
-
-
-def against(rows, reference):
-    """Change of UCS from the reference case on the same packing, mean ± standard error, in %."""
-    base = {row["seed"]: row["peak_stress"] for row in rows if row["case"] == reference and row["test"] == TESTS[0]}
-    lines = []
-    for case in dict.fromkeys(row["case"] for row in rows):
-        change = [100 * (row["peak_stress"] / base[row["seed"]] - 1) for row in rows
-                  if row["case"] == case and row["test"] == TESTS[0] and row["seed"] in base]
-        if len(change) > 1 and case != reference:
-            mean, deviation, count = statistics(change)
-            lines.append([case, f"{mean:+.1f} ± {deviation / math.sqrt(count):.1f}"])
-    return table(["case", f"UCS against {reference} on the same packing, % ± standard error"], lines)
-
-
-def likeness(maps):
-    """Mean correlation of the crack maps of two laws on the same packing, and of one law on different packings.
-
-    maps: {(case, seed): crack map}, all of one size.
-    """
-    cases = list(dict.fromkeys(case for case, _ in maps))
-    same, other = defaultdict(list), []
-    for (case, seed), density in maps.items():
-        if (cases[0], seed) in maps and case != cases[0]:
-            same[case].append(figures.alike(density, maps[cases[0], seed]))
-        other += [figures.alike(density, there) for (name, k), there in maps.items() if name == case and k > seed]
-    lines = [[f"{case} and {cases[0]}, same packing", shown(values, 1, 2)] for case, values in same.items()]
-    lines.append(["one law, different packings", shown(other, 1, 2)])
-    return table(["cracks in the same places", "correlation"], lines)
-
-
-# ---- the page
 
 def slope_cases():
     """{law: {H: case}}."""
@@ -201,10 +133,10 @@ def slope_cases():
 
 
 def mean_and_error(rows, case):
-    """{quantity: (mean, standard error)} of a case, in the units of P_ROCK."""
+    """{quantity: (mean, standard error)} of a case, in the units of MEASURED_ROCK."""
     def of(test, name, scale):
         values = [row[name] for row in rows if (row["case"], row["test"]) == (case, test)]
-        mean, deviation, count = statistics(values, scale) if values else (math.nan, math.nan, 1)
+        mean, deviation, count = tables.statistics(values, scale) if values else (math.nan, math.nan, 1)
         return mean, deviation / math.sqrt(count) if count > 1 else 0.0
 
     strong, weak = of("compression", "peak_stress", 1e-6), of("tension", "peak_stress", 1e-6)
@@ -215,26 +147,29 @@ def mean_and_error(rows, case):
 
 
 def write(folder):
-    """Tables and figures of all runs that are there."""
+    """Tables and figures of all runs that exist. -> the tables, in Markdown."""
     runs = {campaign: found(folder, campaign) for campaign in CAMPAIGNS}
-    rows = {campaign: [figures.row_of(campaign, *key, run) for key, run in done.items()]
+    rows = {campaign: [tables.row_of(campaign, *key, run) for key, run in done.items()]
             for campaign, done in runs.items()}
-    figures.write_csv(folder / "uniaxial.csv", [row for part in rows.values() for row in part])
+    tables.write_csv(folder / "uniaxial.csv", [row for part in rows.values() for row in part])
     lines = []
     for campaign in CAMPAIGNS:
         if rows[campaign]:
-            lines += [f"### {TITLES[campaign]}", "", *strengths(rows[campaign])]
+            lines += [f"### {TITLES[campaign]}", "", *tables.strengths(rows[campaign])]
     for campaign in ("laws", "small"):
         if rows[campaign]:
-            maps = {(case, seed): figures.crack_map(run) for (case, test, seed), run in runs[campaign].items()
+            maps = {(case, seed): tables.crack_map(run) for (case, test, seed), run in runs[campaign].items()
                     if test == "compression"}
-            lines += [f"### {TITLES[campaign]}: against the brittle law", "", *against(rows[campaign], "brittle"),
-                      *likeness(maps)]
-    (folder / "tables.md").write_text("\n".join(lines), encoding="utf-8")
+            lines += [f"### {TITLES[campaign]}: against the brittle law", "", *tables.against(rows[campaign], "brittle"),
+                      *tables.likeness(maps)]
+    written = [folder / "stress_strain.csv", folder / "uniaxial.csv"]
+    write_curves(written[0], {**runs["laws"], **runs["softening"]})
     with matplotlib.rc_context(plots.STYLE):
         for name, figure in drawn(runs, rows).items():
-            figure.savefig(folder / f"{name}.png")
-    write_curves(folder / "stress_strain.csv", {**runs["laws"], **runs["softening"]})
+            written.append(folder / f"{name}.png")
+            figure.savefig(written[-1])
+    generated.record(*filter(Path.exists, written))
+    return generated.write_page(folder / "uniaxial.md", lines)
 
 
 def drawn(runs, rows):
@@ -243,16 +178,16 @@ def drawn(runs, rows):
     if rows["small"]:
         found["over_softening"] = figures.over_softening(rows["small"], slope_cases())
     if rows["factors"]:
-        groups = {"factors": "", "combined": "", "closest_small": "near P: ", "sandstone": "2100 discs: ",
-                  "closest": "2100 discs, near P: "}
+        groups = {"factors": "", "combined": "", "closest_small": "close: ", "sandstone": "2100 discs: ",
+                  "closest": "2100 discs, close: "}
         values = {f"{words}{case}": mean_and_error(rows[campaign], case) for campaign, words in groups.items()
                   for case in dict.fromkeys(row["case"] for row in rows[campaign])}
-        found["sandstone_factors"] = figures.factors(values, P_ROCK)
+        found["sandstone_factors"] = figures.factors(values, MEASURED_ROCK)
     return found
 
 
 def of_laws(runs, suffix):
-    """Stress over strain and failure of M's cases, as far as they are there; the failures are the first packing's."""
+    """Stress over strain and failure of the three laws, as far as the runs exist; failures of the first packing."""
     by_case = defaultdict(list)
     for (case, test, _), run in sorted(runs.items(), key=lambda item: item[0][2]):
         if test == "compression":
@@ -272,7 +207,7 @@ def of_laws(runs, suffix):
 
 def write_curves(path, runs):
     """Thinned stress-strain curves of the first packing."""
-    figures.write_csv(path, [
+    tables.write_csv(path, [
         {"case": case, "test": test, "platen_strain": strain, "axial_strain": axial, "lateral_strain": lateral,
          "stress_Pa": stress}
         for (case, test, seed), run in runs.items() if seed == 1
@@ -294,8 +229,7 @@ def main(folder, words):
                 except RunFailed as error:
                     print(error, file=sys.stderr, flush=True)
                     failed = 1
-    write(folder)
-    print((folder / "tables.md").read_text(encoding="utf-8"))
+    print(write(folder))
     return failed
 
 

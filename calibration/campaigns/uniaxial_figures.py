@@ -1,79 +1,18 @@
-"""Tables and figures of laboratory campaigns: strengths by case and packing, stress over strain, where rock failed."""
-import csv
+"""Figures of laboratory campaigns: stress over strain, failure, strength over H and over other parameters.
+
+runs: {label: RunFolder}.
+"""
 import math
 
 import numpy as np
 from matplotlib.collections import LineCollection
-from scipy.ndimage import gaussian_filter
 
 from rockwear.report import plots, shapes
 from rockwear.report.plots import MM, canvas, discs, frame
 
-RESULTS = ["peak_stress", "peak_strain", "youngs_modulus", "poissons_ratio", "tensile_cracks", "shear_cracks",
-           "tensile_cracks_at_peak", "shear_cracks_at_peak", "failed"]
-CELL, SMOOTHING = 2.5e-3, 5e-3
-"""Of a map of cracks, m: its cells, and the standard deviation of the Gaussian it is smoothed by."""
-DENSEST = 0.2
-"""Part of the area that counts as localised."""
-ROCK, GRIP, CRACK = "#e2d4b4", "#9a9a92", "#cc1414"
+CRACK = "#cc1414"
 CURVE_POINTS = 150
 
-
-def row_of(campaign, case, test, seed, run):
-    """{column: value} of a run in SI, with what the energy book misses and how much of the cracks is localised."""
-    balance = run.summary["balances"]["energy"]
-    return {"campaign": campaign, "case": case, "test": test, "seed": seed,
-            **{name: run.result(name) for name in RESULTS},
-            "energy_missing": balance["residual"] / balance["platen_work"], "localised": localised(crack_map(run))}
-
-
-def write_csv(path, rows):
-    """Rows of dicts with the same keys; no file without rows."""
-    if not rows:
-        return
-    with open(path, "w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, rows[0].keys(), lineterminator="\n")
-        writer.writeheader()
-        writer.writerows({k: f"{v:.6g}" if isinstance(v, float) else v for k, v in row.items()} for row in rows)
-
-
-def read_csv(path):
-    """Rows as `write_csv` was given them, numbers as float."""
-    def value(text):
-        try:
-            return float(text)
-        except ValueError:
-            return text
-
-    with open(path, newline="", encoding="utf-8") as file:
-        return [{name: value(text) for name, text in row.items()} for row in csv.DictReader(file)]
-
-
-# ---- cracks
-
-def crack_map(run):
-    """Broken bonds per m2 where they were bonded, smoothed: (rows, columns) of cells over the specimen."""
-    model, shot = run.model, run.snapshot(-1)
-    broken = model["bonds"][shot["status"] != 0]
-    middle = model["rock_positions"][broken].mean(axis=1)
-    edges = [np.linspace(0, side, max(2, round(side / CELL)) + 1) for side in model["box"]]
-    counts, *_ = np.histogram2d(*middle.T, bins=edges)
-    return gaussian_filter(counts, SMOOTHING / CELL, mode="constant") / CELL**2
-
-
-def localised(density):
-    """Part of all cracks that lies in the densest fifth of the area; 0.2 were they everywhere alike."""
-    values = np.sort(density.ravel())[::-1]
-    whole = values.sum()
-    return float(values[:round(DENSEST * len(values))].sum() / whole) if whole else math.nan
-
-
-def alike(first, second):
-    """Correlation of two maps of cracks: 1 where the cracks are in the same places, 0 where chance put them."""
-    return float(np.corrcoef(first.ravel(), second.ravel())[0, 1])
-
-
-# ---- figures; runs: {label: RunFolder}
 
 def thinned(values):
     """At most CURVE_POINTS of them, evenly spread."""
@@ -96,7 +35,7 @@ def stress_strain(panels):
 
 
 def failures(runs):
-    """A column a case: displacement field above, cracks below."""
+    """A column for each case: displacements above, cracks below."""
     figure, axes = canvas(3.6 * len(runs), 7.4, 2, len(runs))
     for k, (label, run) in enumerate(runs.items()):
         displacements(axes[k], run, label)
@@ -159,9 +98,9 @@ def over_softening(rows, cases):
 
 
 def factors(rows, wanted):
-    """One change at a time: a row a case, a panel a quantity.
+    """One change at a time: a row for each case, a panel for each quantity.
 
-    rows: {case: {quantity: (mean, error)}}, the first being what the changes are made to; wanted: {quantity: value}.
+    rows: {case: {quantity: (mean, error)}}, the first without a change; wanted: {quantity: value}.
     """
     figure, panels = canvas(13, 1 + 0.27 * len(rows), 1, len(wanted), sharey=True)
     for axes, (quantity, target) in zip(panels, wanted.items()):
@@ -173,5 +112,5 @@ def factors(rows, wanted):
         axes.set(title=quantity, ylim=(-0.7, len(rows) - 0.3), xlim=(0, 1.1 * max(np.nanmax(means + errors), target)))
         axes.set_yticks(places, list(rows))
         axes.grid(axis="y", color="0.9")
-    figure.suptitle("green: what P says of its rock; dotted: P's numbers as they are", fontsize=10)
+    figure.suptitle("green: the sandstone reported by [Rojek 2014]; dotted: its parameters unchanged", fontsize=10)
     return figure

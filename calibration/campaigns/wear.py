@@ -1,10 +1,10 @@
-"""Wear of whole tools over many cycles: M's test tooth and ripper in full, one page.
+"""Wear of whole tools over many cycles: test tooth and ripper of [Rojek 2003, 9.2 and 9.3] in full, one page.
 
     python3 -m calibration.campaigns.wear DIR [CASE ...]            (make campaign-wear)
 
-All cases, or those named; two runs at a time, a folder a run. A campaign that was stopped goes on: finished runs stay,
-the others resume from their checkpoints. The last part cuts fresh rock with the shapes that the ripper passed through
-(calibration.campaigns.sharp_and_worn).
+All cases, or those named; two runs at a time, a folder a run. An interrupted campaign resumes: finished runs are kept, the
+others continue from their checkpoints. The last part cuts fresh rock with the worn outlines of the ripper
+(calibration.campaigns.sharp_and_worn). Writes report.html, wear.md (tables), figures and provenance.json into DIR.
 """
 import sys
 from pathlib import Path
@@ -12,6 +12,7 @@ from pathlib import Path
 import matplotlib
 import numpy as np
 
+from calibration import generated
 from calibration.campaigns import sharp_and_worn
 from calibration.campaigns.runs import RunFailed, Runs
 from rockwear.kernels.wear_statistics import difference, middles
@@ -21,7 +22,7 @@ from rockwear.report.folder import read_history
 TOOTH, RIPPER = "yade_scripts/tooth_cycles.py", "yade_scripts/ripper.py"
 FEW_PICTURES = dict(snapshot_period=0.0035, checkpoint_interval=300)
 LONG = dict(FEW_PICTURES, cycles=28, hardness_temperature=293.15, heat="false")
-"""0.201 s as in M 9.2, constant hardness."""
+"""0.201 s as in [Rojek 2003, 9.2], constant hardness."""
 CASES = {
     "test tooth, 2e5": (TOOTH, dict(LONG, wear_acceleration=2e5)),
     "ripper, 2e5": (RIPPER, dict(FEW_PICTURES, wear_acceleration=2e5)),
@@ -38,30 +39,36 @@ CASES = {
 }
 SAME_WORK = {"a hundredth": ("test tooth, 2.5e4", "test tooth, 5e4", "test tooth, 1e5"),
              "a quarter": ("test tooth, 2e5", "test tooth, 4e5", "test tooth, 8e5", "test tooth, 1.6e6")}
-"""R's first rule: wear twice as fast and half as long, and that again, until so much of the tooth is worn off."""
+"""First rule of [Rocky]: wear twice as fast and half as long, repeatedly, until the same part of the tooth is worn off."""
 WORN = "ripper, 2e5"
-"""The run whose shapes cut fresh rock."""
+"""The run whose outlines cut fresh rock."""
 COARSE = dict(grading_factor=3)
 """Rock graded threefold below the reach of the cut: half the time."""
-OF_M = 0.203, 40.0
-"""Seconds and per cent of the mass lost, M 9.2."""
+PUBLISHED = 0.203, 40.0
+"""Seconds and per cent of the mass lost [Rojek 2003, 9.2]."""
 
 
 def profile(run):
-    """(b,) m3 worn at each place along the first outline."""
+    """(b,) m3 worn in each interval along the initial outline."""
     return np.sum(list(read_history(run.path / "wear_profile.csv")[0].values()), axis=1)
 
 
-def wear_acceleration(runs):
-    """Wear of the same work done at several accelerations: distributions, and how far each is from the slowest one.
+def compare(runs):
+    """Wear of the same work at several wear accelerations. -> (profiles, differences, expected differences).
 
-    runs: {name: RunFolder}, the slowest first. Beside it stands what each run says of its own error: the difference of
-    two runs is due to both.
+    runs: {name: RunFolder}, the slowest first. differences: of each run's distribution of wear from that of the slowest
+    run, in %; the expected ones combine the errors that both runs estimate from their own records.
     """
-    factors = np.array([run.parameter("wear_acceleration", 1.0) for run in runs.values()])
-    errors = np.array([run.result("wear_distribution_error") for run in runs.values()])
     worn = [profile(run) for run in runs.values()]
-    found = [100 * difference(share, worn[0]) for share in worn[1:]]
+    errors = np.array([run.result("wear_distribution_error") for run in runs.values()])
+    found = np.array([100 * difference(share, worn[0]) for share in worn])
+    return worn, found, 100 * np.hypot(errors, errors[0])
+
+
+def comparison_figure(runs):
+    """Distributions of wear along the tool, and their differences over wear_acceleration. runs: as in `compare`."""
+    factors = np.array([run.parameter("wear_acceleration", 1.0) for run in runs.values()])[1:]
+    worn, found, expected = compare(runs)
     figure, (along, against) = plots.canvas(12, 4.4, 1, 2)
     place = plots.MM * middles(next(iter(runs.values())).model["outline"], len(worn[0]))
     for name, share in zip(runs, worn):
@@ -70,14 +77,19 @@ def wear_acceleration(runs):
     along.set(xlabel="arc length from the tip along the new outline / mm", ylabel="% of the worn volume",
               xlim=(reached.min() - 5, reached.max() + 5))
     along.legend(fontsize=8)
-    against.semilogx(factors[1:], found, "o", color="#b5651d", label="difference from the slowest run")
-    against.semilogx(factors[1:], 100 * np.hypot(errors[1:], errors[0]), "s-", color="#2c6e91",
-                   label="expected from both runs' own records")
-    against.set(xlabel="acceleration, at the same work", ylabel="difference of the distributions / %", ylim=(0, None))
-    against.set_xticks(factors[1:], [f"{factor:g}" for factor in factors[1:]])
+    against.semilogx(factors, found[1:], "o", color="#b5651d", label="difference from the slowest run")
+    against.semilogx(factors, expected[1:], "s-", color="#2c6e91", label="expected from both runs' own records")
+    against.set(xlabel="wear acceleration, at the same work", ylabel="difference of the distributions / %", ylim=(0, None))
+    against.set_xticks(factors, [f"{factor:g}" for factor in factors])
     against.set_xticks([], minor=True)
     against.legend(fontsize=8)
     return figure
+
+
+def comparison_rows(part, runs):
+    """Rows of the table of differences. runs: as in `compare`; part: of the tooth that is worn off."""
+    return [(part, name, f"{1e6 * share.sum():.3g}", *((f"{off:.0f} %", f"{expected:.0f} %") if k else ("", "")))
+            for k, (name, share, off, expected) in enumerate(zip(runs, *compare(runs)))]
 
 
 def mass_loss(runs):
@@ -91,16 +103,16 @@ def mass_loss(runs):
         raw.plot(plots.MS * time, worn, label=name, **style)
         hours = run.column("working_time") * run.parameter("wear_acceleration", 1.0) / 3600
         scaled.loglog(hours[worn > 0], worn[worn > 0], **style)
-    raw.plot(plots.MS * OF_M[0], OF_M[1], "k*", markersize=12, label="M 9.2, k × 7000")
-    scaled.plot(OF_M[0] * 7000 / 3600, OF_M[1], "k*", markersize=12)
+    raw.plot(plots.MS * PUBLISHED[0], PUBLISHED[1], "k*", markersize=12, label="[Rojek 2003, 9.2], k × 7000")
+    scaled.plot(PUBLISHED[0] * 7000 / 3600, PUBLISHED[1], "k*", markersize=12)
     raw.set(xlabel="simulated time / ms", ylabel="worn off / % of the tool", yscale="log", ylim=(1e-2, 100))
-    scaled.set(xlabel="working time × acceleration / h", ylabel="worn off / % of the tool", ylim=(1e-2, 100))
+    scaled.set(xlabel="working time × wear acceleration / h", ylabel="worn off / % of the tool", ylim=(1e-2, 100))
     raw.legend(fontsize=8)
     return figure
 
 
 def wear_table(runs):
-    """A line a run: how much, how fast, and how far to believe it."""
+    """(rows, header) with a row for each run: amount and rate of wear, and their reliability."""
     rows = []
     for name, run in runs.items():
         hours = run.result("working_time") * run.parameter("wear_acceleration", 1.0) / 3600
@@ -112,15 +124,34 @@ def wear_table(runs):
                      page.percent(run.result("wear_distribution_error"), 1.0),
                      page.number(run.result("trusted_wear_acceleration")),
                      page.percent(run.summary["balances"]["mass"]["unexplained"], run.summary["balances"]["mass"]["archard"])))
-    return page.table(rows, ("run", "simulated", "stands for", "worn off", "rate", "mean cutting force", "friction, of the work",
-                             "error of the distribution", "trusted acceleration", "wear against Archard's volume"))
+    return rows, ("run", "simulated", "stands for", "worn off", "rate", "mean cutting force", "friction, of the work",
+                  "error of the distribution", "trusted wear acceleration", "wear against Archard's volume")
+
+
+COMPARISON_HEADER = "until", "run", "worn, mm²", "difference from the slowest run", "expected"
+
+
+def comparison_sections(folder, found):
+    """(sections of the page, rows of the table) on the same work at several wear accelerations; found: {name: run}."""
+    sections, rows = [], []
+    for part, names in SAME_WORK.items():
+        runs = {name: found[name] for name in names if name in found}
+        if len(runs) > 1:
+            path = folder / f"acceleration_{part.replace(' ', '_')}.png"
+            comparison_figure(runs).savefig(path)
+            generated.record(path)
+            rows += comparison_rows(part, runs)
+            sections.append(page.Section(f"Effect of wear acceleration: until {part} of the tooth is worn off",
+                                         "[Rocky]: the same work at other factors must give the same wear.",
+                                         [page.image(path)]))
+    return sections, rows
 
 
 def main(folder, *names):
-    """Run what is missing of the named cases, all by default, and write the page. -> exit code, 1 where a run failed."""
+    """Run the missing ones of the named cases, all by default, and write the page. -> exit code, 1 where a run failed."""
     unknown = set(names) - set(CASES)
     if unknown:
-        sys.exit(f"campaign_wear: no such case: {', '.join(sorted(unknown))}; there are: {'; '.join(CASES)}")
+        sys.exit(f"wear campaign: no such case: {', '.join(sorted(unknown))}; there are: {'; '.join(CASES)}")
     folder, cases = Path(folder), {name: CASES[name] for name in names or CASES}
     with Runs(folder, keep=True) as runs:
         waiting = {name: runs.start(name.replace(", ", "-").replace(" ", "_"), script, **{**COARSE, **values})
@@ -128,32 +159,31 @@ def main(folder, *names):
         failed = {name: str(future.exception()) for name, future in waiting.items() if future.exception()}
         found = {name: future.result() for name, future in waiting.items() if name not in failed}
     for words in failed.values():
-        print(f"campaign_wear: {words}", file=sys.stderr)
+        print(f"wear campaign: {words}", file=sys.stderr)
     if not found:
         return 1
     with matplotlib.rc_context(plots.STYLE):
         mass_loss(found).savefig(folder / "mass_loss.png")
-        sections = [page.Section("How fast the tools wear", "Left as simulated, right over the time that the accelerated wear "
-                                 "stands for: equal rates fall on one line. The star is M's test tooth.",
-                                 [page.image(folder / "mass_loss.png"), wear_table(found)])]
-        for part, names in SAME_WORK.items():
-            same_work = {name: found[name] for name in names if name in found}
-            if len(same_work) > 1:
-                path = folder / f"acceleration_{part.replace(' ', '_')}.png"
-                wear_acceleration(same_work).savefig(path)
-                sections.append(page.Section(f"Does acceleration change the wear? Until {part} of the tooth is gone",
-                                             "R: the same work at other factors must wear alike.", [page.image(path)]))
+        compared, differences = comparison_sections(folder, found)
+    rows, header = wear_table(found)
+    sections = [page.Section("Rate of wear", "Left as simulated, right over the working time times wear acceleration: equal "
+                             "rates coincide. The star is the test tooth of [Rojek 2003, 9.2].",
+                             [page.image(folder / "mass_loss.png"), page.table(rows, header)]), *compared]
+    generated.write_page(folder / "wear.md", [*generated.table(header, rows), *(
+        generated.table(COMPARISON_HEADER, differences) if differences else ())])
     for name, run in found.items():
         pieces = [page.image(run.path / "figures" / f"{figure}.png") for figure in ("shape", "wear", "trust")
                   if (run.path / "figures" / f"{figure}.png").exists()]
         sections.append(page.Section(name, "", pieces))
     if WORN in found:
         sharp_and_worn.main(found[WORN].path, folder / "sharp_and_worn")
-        sections.append(page.Section("Sharp and worn", f"The same rock cut by the tool of {WORN}, as it was new and as it wore; "
+        sections.append(page.Section("Sharp and worn", f"The same rock cut by the new and the worn outlines of {WORN}; "
                                      "see sharp_and_worn/report.html.",
                                      [page.image(folder / "sharp_and_worn/sharp_and_worn.png")]))
     sections += [page.Section(name, f"FAILED: {words}", [" "]) for name, words in failed.items()]
-    (folder / "report.html").write_text(page.document("wear", f"{len(found)} runs, {len(failed)} failed", sections), encoding="utf-8")
+    (folder / "report.html").write_text(page.document("wear", f"{len(found)} runs, {len(failed)} failed", sections),
+                                        encoding="utf-8")
+    generated.record(folder / "mass_loss.png", folder / "report.html")
     print(folder / "report.html")
     return 1 if failed else 0
 
@@ -165,4 +195,4 @@ if __name__ == "__main__":
     try:
         sys.exit(main(*sys.argv[1:]))
     except RunFailed as error:
-        sys.exit(f"campaign_wear: {error}")
+        sys.exit(f"wear campaign: {error}")

@@ -1,18 +1,18 @@
-"""From a wear test in the laboratory to k (M 6.6): your own rows of force, area, distance, depth and temperature.
+"""Wear coefficient k from laboratory wear tests [Rojek 2003, 6.6]: force, area, distance, depth and temperature.
 
-    python3 -m calibration.fitting.wear_fit [FILE.csv] [--law pressure] [--out DIR] ...       (--help)
+    python3 -m calibration.fitting.wear_fit [FILE.csv] [--wear_law pressure] [--out DIR] ...       (--help)
 
-A row a test, a block pressed with a known force and slid over a known distance. The header says `name [unit]`:
+One row for each test: a block pressed with a known force slides over a known distance. The header has `name [unit]`:
 
     steel          MET71, MET91, or any name where `hardness` is given
-    force          N, kN            area      mm2, cm2, m2         or pressure (Pa, MPa), which goes before both
+    force          N, kN            area      mm2, cm2, m2         or pressure (Pa, MPa), which has precedence
     distance       m, km            depth     um, mm, m            worn over that distance
-    temperature    degC, K          hardness  HB, Pa, MPa          goes before steel and temperature
-    friction       N, kN            measured friction force; without it mu times the force
+    temperature    degC, K          hardness  HB, Pa, MPa          has precedence over steel and temperature
+    friction       N, kN            measured friction force; default: mu times the force
 
-`<name> error [unit]` is the standard error of a column, as far as it is known. Without FILE, the four rows of M 6.6 are
-taken, with half a last digit for errors. M's depths are differences: 2.0 - 0.4 mm and 6 - 4 mm, over 100 m. M's own k
-take 10 MPa for a HB (--brinell 1e7 follows it); M 6.14 and 6.15 have their two results interchanged.
+`<name> error [unit]` is the standard error of a column, where known. Default FILE: the four tests of [Rojek 2003, 6.6], with
+half the last digit as errors. Its depths are differences: 2.0 - 0.4 mm and 6 - 4 mm, over 100 m. Its published k take
+10 MPa for 1 HB (option --brinell 1e7); the results of eqs. 6.14 and 6.15 are interchanged there.
 """
 import argparse
 import csv
@@ -22,9 +22,11 @@ from pathlib import Path
 
 import numpy as np
 
+from calibration import generated
 from rockwear.kernels.archard import BRINELL, KELVIN, MET71, MET91
 from rockwear.kernels.checks import ParameterError, finite, positive, require
 from rockwear.kernels.wear_laws import LAWS, LaboratoryTest, PowerLaw, SumOfModes, wear_law
+from rockwear.report import plots
 
 EXAMPLE = Path(__file__).with_name("wear_tests.csv")
 STEELS = {"MET71": MET71, "MET91": MET91}
@@ -126,7 +128,7 @@ def _hardness(row, errors, brinell):
 def fit(rows, *, law="pressure", mu=0.3, exponent=1.0, modes="", brinell=BRINELL):
     """Fit the law to each steel's rows. -> {steel: {"tests", "error", "law", "fit", "rows": [(k, error)], "exponent"}}.
 
-    exponent: of the power law; None fits it as well. Rows alone are fitted one by one unless the law has several modes.
+    exponent: of the power law; None fits it too. Each row is also fitted alone unless the law has several modes.
     """
     found = {}
     for steel in dict.fromkeys(row.get("steel", "") for row in rows):
@@ -156,7 +158,7 @@ def plus_minus(value, uncertainty):
 
 
 def lines(found):
-    """What was found, line by line."""
+    """The printed results, line by line."""
     for steel, one in found.items():
         for number, (k, u) in enumerate(one["rows"], 1):
             p, s, w = (one["tests"].pressure[number - 1] / 1e6, one["tests"].distance[number - 1],
@@ -169,17 +171,15 @@ def lines(found):
             yield f"{steel:6s} exponent n = {plus_minus(*one['exponent'])}"
         errors = one["error"]
         if np.any(errors > 0) and not np.all(errors > 0):
-            yield f"{steel:6s} some tests state no error: all count alike, and the error of k is their scatter"
+            yield f"{steel:6s} some tests state no error: equal weights, the error of k is their scatter"
         if one["fit"].misfit > 4:
             yield (f"{steel:6s} the tests differ by {one['fit'].misfit**0.5:.1f} times their stated errors: "
                    "k is not one number here, or the errors are larger")
 
 
 def draw(found, file):
-    """Worn depth over sliding distance against p / H, tests with their errors, and the law's line or points."""
-    from matplotlib.figure import Figure
-    figure = Figure(figsize=(6.5, 4.5), layout="constrained")
-    axes = figure.subplots()
+    """Worn depth over sliding distance against p / H: tests with their errors, and the law as a line or points."""
+    figure, (axes,) = plots.canvas(6.5, 4.5)
     for number, (steel, one) in enumerate(found.items()):
         tests, colour = one["tests"], f"C{number}"
         x, rate = 1e3 * tests.pressure / tests.hardness, 1e6 * tests.depth / tests.distance
@@ -200,24 +200,24 @@ def draw(found, file):
 
 
 def main(words=None):
-    """Command line. -> exit code: 0, or 2 for input that cannot be used, said in one line."""
+    """Command line. -> exit code: 0, or 2 for invalid input, reported in one line."""
     parser = argparse.ArgumentParser(prog="python3 -m calibration.fitting.wear_fit", description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("file", nargs="?", default=str(EXAMPLE), help="CSV file; M's four rows when left out")
-    parser.add_argument("--law", default="pressure", choices=LAWS)
-    parser.add_argument("--mu", default="0.3", help="friction coefficient, where friction was not measured")
+    parser.add_argument("file", nargs="?", default=str(EXAMPLE), help="CSV file; default: the four tests of [Rojek 2003, 6.6]")
+    parser.add_argument("--wear_law", default="pressure", choices=LAWS)
+    parser.add_argument("--mu", default="0.3", help="friction coefficient, where friction is not measured")
     parser.add_argument("--exponent", default="1", help="n of the power law, or fit")
-    parser.add_argument("--modes", default="", help="of several modes: k/exponent/share, ... (k is what is fitted)")
-    parser.add_argument("--brinell", default=str(BRINELL), help="Pa a HB")
+    parser.add_argument("--modes", default="", help="of several modes: k/exponent/share, ... (k is fitted)")
+    parser.add_argument("--brinell", default=str(BRINELL), help="Pa per HB")
     parser.add_argument("--out", default="", help="folder for wear_fit.json and wear_fit.png")
     given = parser.parse_args(words)
     try:
         brinell, mu = positive("brinell", given.brinell, "Pa"), positive("mu", given.mu)
         exponent = None if given.exponent == "fit" else positive("exponent", given.exponent)
-        found = fit(read(given.file, brinell), law=given.law, mu=mu, exponent=exponent, modes=given.modes,
+        found = fit(read(given.file, brinell), law=given.wear_law, mu=mu, exponent=exponent, modes=given.modes,
                     brinell=brinell)
         if given.out:
-            _write(Path(given.out), found, given.law)
+            _write(Path(given.out), found, given.wear_law)
     except ParameterError as error:
         print(f"error: {error}", file=sys.stderr)
         return 2
@@ -228,13 +228,14 @@ def main(words=None):
 def _write(folder, found, law):
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        text = json.dumps({"law": law, "steels": {steel: {
+        text = json.dumps({"wear_law": law, "steels": {steel: {
             "k": one["fit"].k.tolist(), "uncertainty": _plain(one["fit"].uncertainty), "exponent": one["exponent"],
             "k_of_each_test": [k for k, _ in one["rows"]],
             "uncertainty_of_each_test": _plain(u for _, u in one["rows"])}
             for steel, one in found.items()}}, indent=1)
         (folder / "wear_fit.json").write_text(text, encoding="utf-8")
         draw(found, folder / "wear_fit.png")
+        generated.record(folder / "wear_fit.json", folder / "wear_fit.png")
     except OSError as error:
         raise ParameterError("out", str(folder), f"a folder that can be written ({error.strerror})") from None
 

@@ -1,18 +1,18 @@
-"""What a validation finds: rows of expected and got with a verdict, and the sections they come in."""
+"""Results of a validation: rows of expected and found values with a verdict, in sections."""
 from dataclasses import dataclass, field
 from typing import Callable
 
 
 @dataclass
 class Row:
-    """One quantity; a deviation of up to `allowed` (of the quantity's unit) is as good as none.
+    """One quantity; it may deviate by up to `allowed` (in the quantity's unit).
 
-    source: the expected value is what a source says of its rock or model, and need not come out.
+    source: the expected value is what a publication reports of its rock or model; a deviation is information, no failure.
     """
 
     quantity: str
     expected: float
-    got: float
+    found: float
     allowed: float
     unit: str = ""
     source: bool = False
@@ -20,22 +20,22 @@ class Row:
     @property
     def verdict(self):
         """holds or FAILS; agrees or differs from a source."""
-        close = abs(self.got - self.expected) <= self.allowed
+        close = abs(self.found - self.expected) <= self.allowed
         return {(True, False): "holds", (False, False): "FAILS", (True, True): "agrees", (False, True): "differs"}[
             close, self.source]
 
     def cells(self):
-        """As the table shows it."""
+        """The row of the printed table."""
         unit = f" {self.unit}" if self.unit else ""
-        return [self.quantity, f"{self.expected:g}{unit}", f"{self.got:.6g}{unit}", f"{self.got - self.expected:+.2g}",
+        return [self.quantity, f"{self.expected:g}{unit}", f"{self.found:.6g}{unit}", f"{self.found - self.expected:+.2g}",
                 f"{self.allowed:.2g}", self.verdict]
 
 
 @dataclass
 class Section:
-    """runs: {name: (script, {parameter: value})}; judge({name: RunFolder}) -> (rows, {name: Figure})."""
+    """runs: {name: (script, {parameter: value})}; evaluate({name: RunFolder}) -> (rows, {name: Figure})."""
 
     title: str
     words: str
-    judge: Callable
+    evaluate: Callable
     runs: dict = field(default_factory=dict)

@@ -40,7 +40,7 @@ def campaign(tmp_path_factory):
 
 def test_the_page_shows_every_run(campaign):
     page = (campaign[0] / "report.html").read_text(encoding="utf-8")
-    for words in (*CASES, "How fast the tools wear", "Until a hundredth of the tooth is gone", "Sharp and worn"):
+    for words in (*CASES, "Rate of wear", "until a hundredth of the tooth is worn off", "Sharp and worn"):
         assert words in page
     assert "a quarter" not in page
 
@@ -49,7 +49,7 @@ def test_what_the_figure_of_accelerations_compares(campaign):
     runs = {name: RunFolder(campaign[0] / name.replace(", ", "-").replace(" ", "_")) for name in CASES}
     slow, fast = runs.values()
     assert campaign_wear.profile(slow).sum() == pytest.approx(slow.result("worn_volume"), rel=1e-6)
-    found, = [line.get_ydata() for line in campaign_wear.wear_acceleration(runs).axes[1].lines if line.get_marker() == "o"]
+    found, = [line.get_ydata() for line in campaign_wear.comparison_figure(runs).axes[1].lines if line.get_marker() == "o"]
     share_of_fast, share_of_slow = (share / share.sum() for share in map(campaign_wear.profile, (fast, slow)))
     assert found == pytest.approx([100 * np.abs(share_of_fast - share_of_slow).sum()])
     assert found[0] > 0

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from calibration.benchmarks.particle_size import (
+from calibration.benchmarks.worn_outlines import (
     DOWN, OUTLINE, PATTERN_WORN, Pattern, exact, flat, flat_of_segments, particles, patterned, patterned_segments,
     rub, unexplained)
 from rockwear.kernels.polygon import area, tooth
