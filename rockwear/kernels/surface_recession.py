@@ -9,6 +9,8 @@ from scipy.sparse import coo_array
 
 SPENT = 1e-12
 """Part of a particle's heat below which no further layer is looked at."""
+PAIRS = 1_000_000
+"""Most pairs of points and facets at a time in `outside`."""
 
 
 def neighbours(pairs, count):
@@ -23,9 +25,9 @@ def receded(*, temperature, capacity, adjacent, leaving, share):
     One after another, in the order given. The neighbours of a leaving particle take its temperature, theirs goes to the
     layer behind them, and so on inwards: on a chain the field moves by one particle for `share` = 1. No layer becomes
     hotter than the one in front of it was (of several neighbours there, the coldest), and the heat given is at most
-    what the leaving particle holds above the coldest one. Where neighbouring columns share the particles below, the first
-    layers are served first: heat and surface temperature are kept, and the profile behind is steeper than it was, until
-    conduction has evened it out.
+    what the leaving particle holds above the coldest one. Where neighbouring columns share the particles below, the
+    first layers are served first: heat and surface temperature are kept, and the profile behind is steeper than it was,
+    until conduction has evened it out.
 
     temperature (n,) K; capacity (n,) J/K, 0 for particles that are gone; adjacent: by `neighbours`. The sum of
     capacity * temperature is kept.
@@ -58,3 +60,31 @@ def _move_inwards(temperature, capacity, adjacent, one, there, share):
         left -= part * wanted.sum()
         unseen[layer] = False
     return budget - left
+
+
+def outside(points, vertices, facets):
+    """(n,) bool: which of the points (n, d) lie outside of a closed boundary, whose winding number there is below 1/2.
+
+    vertices (k, d) m, facets (m, d) as in kernels.boundary, d = 2 or 3. The winding number is the sum of the angles
+    over 2 pi, or of the solid angles over 4 pi [van Oosterom and Strackee, IEEE Trans. Biomed. Eng. 30 (1983) 125], at
+    which a point sees the facets.
+    """
+    points, corners = np.asarray(points, float), np.asarray(vertices, float)[facets]
+    some = max(1, PAIRS // len(corners))
+    turns = [_turns(points[low:low + some], corners) for low in range(0, len(points), some)]
+    return np.concatenate(turns) < 0.5 if turns else np.zeros(0, bool)
+
+
+def _turns(points, corners):
+    sight = corners[None] - points[:, None, None]
+    if points.shape[1] == 2:
+        (ax, ay), (bx, by) = np.moveaxis(sight, (2, 3), (0, 1))
+        return np.arctan2(ax * by - ay * bx, ax * bx + ay * by).sum(axis=1) / (2 * np.pi)
+    a, b, c = np.moveaxis(sight, 2, 0)
+    la, lb, lc = (np.linalg.norm(leg, axis=2) for leg in (a, b, c))
+
+    def dot(one, other):
+        return np.einsum("nmd,nmd->nm", one, other)
+
+    below = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb
+    return np.arctan2(dot(a, np.cross(b, c)), below).sum(axis=1) / (2 * np.pi)

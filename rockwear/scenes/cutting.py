@@ -40,6 +40,7 @@ from rockwear.model.materials import Material
 from rockwear.kernels.parameter import Parameter, above_zero, choice, file, flag, integer, number, text
 from rockwear.model.rock import Specimen
 from rockwear.model.particle_tool import Tool
+from rockwear.model.thermal_body import ParticleBody
 
 HARDNESS = {"MET71": MET71, "MET91": MET91}
 MOST_HEAT_STEPS = 1000
@@ -369,7 +370,7 @@ class Cutting(Scene):
         e_tool, e_rock = (effusivity(m.conductivity, m.density, m.specific_heat)
                           for m in (self.tool_material, self.rock_material))
         return Heat(network=network, bonds=self.bonds, rock_friction=self.rock_friction, tool_contact=self.contact,
-                    rock=rock, tool=tool, heat_fraction=v.heat_fraction,
+                    rock=rock, body=ParticleBody(tool), heat_fraction=v.heat_fraction,
                     tool_share=effusivity_share(e_tool, e_rock) if v.heat_sharing == "effusivity" else 0.5,
                     contact_conductance=v.contact_conductance, convection=v.convection, ambient=v.ambient_temperature,
                     rock_paths=paths(v.bond_conductance, v.rock_conductivity, pairs=rock.pairs,
@@ -407,7 +408,7 @@ class Cutting(Scene):
         self.bodies.connect()
 
     def _tool_temperature(self):
-        return self.heat.tool_temperature() if self.heat else np.full(self.tool.count, self.v.tool_temperature)
+        return self.heat.temperature_of_pieces() if self.heat else np.full(self.tool.count, self.v.tool_temperature)
 
     def _on_removal(self, worn, loose):
         if self.heat:

@@ -219,7 +219,7 @@ class Dredging(Cutting):
         hot, mean = self._hot_and_mean(self.heat.network)
         return {"tool_temperature_hot": (hot, "K"), "tool_temperature_mean": (mean, "K"),
                 "water_heat": (-self.heat.network.balance["convected"], "J/m"),
-                "pick_friction_heat": (float(self.heat.averaged["friction_heat"].sum()), "J/m"),
+                "pick_friction_heat": (float(self.heat.load.friction_heat.sum()), "J/m"),
                 "pick_heat_worn_away": (self.worn_heat, "J/m")}
 
     def _hot_and_mean(self, network):
@@ -245,7 +245,7 @@ class Dredging(Cutting):
         network = HeatNetwork(capacity=np.ones(len(state["capacity"])), edges=np.empty((0, 2), int), conductance=0.0,
                               temperature=0.0)
         network.restore(state)
-        there = np.flatnonzero(network.present[self.rock.count:])
+        there = np.flatnonzero(self.heat.body.alive)
         # What particles took up that are gone since comes to the nearest that are left.
         heir = cKDTree(self.tool.positions[there]).query(self.tool.positions)[1]
         power, touch, rock_temperature = self.heat.averages()
