@@ -19,13 +19,21 @@ PAIRS = 1_000_000
 """Most pairs of points and triangles looked at together in `distance`: some 500 MB of temporaries if all were near."""
 
 
+def cross(a, b):
+    """(n, 3) vector products of the rows of a and b (n, 3): np.cross without its cost for other shapes."""
+    (ax, ay, az), (bx, by, bz) = a.T, b.T
+    product = np.empty(a.shape)
+    product[:, 0], product[:, 1], product[:, 2] = ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
+    return product
+
+
 def area_vectors(vertices, facets):
     """(m, d) outward normal of each facet times its area."""
-    corners = vertices[facets]
-    along = corners[:, 1] - corners[:, 0]
+    first = vertices[facets[:, 0]]
+    along = vertices[facets[:, 1]] - first
     if vertices.shape[1] == 2:
         return np.column_stack([along[:, 1], -along[:, 0]])
-    return 0.5 * np.cross(along, corners[:, 2] - corners[:, 0])
+    return 0.5 * cross(along, vertices[facets[:, 2]] - first)
 
 
 def volume(vertices, facets, origin=None):
@@ -45,7 +53,7 @@ def altitudes(vertices, facets):
     if vertices.shape[1] == 2:
         return size
     corners = vertices[facets]
-    return 2 * size / np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
+    return 2 * size / np.linalg.norm(corners - vertices[facets[:, [2, 0, 1]]], axis=2).max(axis=1)
 
 
 def ridges(facets):
@@ -138,34 +146,43 @@ def _piercing(vertices, edges, facets):
     if not len(edges) or not len(facets):
         return np.empty((0, 5), int)
     i, j = _near(vertices, edges, facets)
-    rows = np.column_stack([edges[i], facets[j]])
-    rows = rows[(rows[:, :2, None] != rows[:, None, 2:]).all(axis=(1, 2))]
-    p, q, a, b, c = np.moveaxis(vertices[rows], 1, 0)
-
-    def side(u, v, w, x):
-        return np.einsum("ni,ni->n", np.cross(v - u, w - u), x - u)
-
+    start, end = vertices[edges[:, 0]], vertices[edges[:, 1]]
+    corner, normal = vertices[facets[:, 0]], 2 * area_vectors(vertices, facets)
     # Facets of one plane are on neither side of each other, whatever the last digits say.
-    least = 1e-9 * np.linalg.norm(np.cross(b - a, c - a), axis=1) * np.linalg.norm(q - p, axis=1)
-    above, below = side(a, b, c, p), side(a, b, c, q)
+    least = 1e-9 * np.linalg.norm(normal, axis=1)[j] * np.linalg.norm(end - start, axis=1)[i]
+    above, below = (np.einsum("ni,ni->n", normal[j], ends[i] - corner[j]) for ends in (start, end))
     between = (above * below < 0) & (np.minimum(abs(above), abs(below)) > least)
-    around = np.array([side(p, q, a, b), side(p, q, b, c), side(p, q, c, a)])
-    return rows[between & ((around.min(axis=0) >= -least) | (around.max(axis=0) <= least))]
+    rows, least = np.column_stack([edges[i[between]], facets[j[between]]]), least[between]
+    apart = (rows[:, :2, None] != rows[:, None, 2:]).all(axis=(1, 2))
+    rows, least = rows[apart], least[apart]
+    p, q, *corners = np.moveaxis(vertices[rows], 1, 0)
+    around = np.array([np.einsum("ni,ni->n", cross(q - p, v - p), w - p)
+                       for v, w in zip(corners, corners[1:] + corners[:1])])
+    return rows[(around.min(axis=0) >= -least) | (around.max(axis=0) <= least)]
 
 
 def _near(vertices, edges, facets):
-    """Numbers (2, k) of edges and facets whose surrounding spheres meet, facets by octaves of their size."""
+    """Numbers (2, k) of edges and facets whose surrounding spheres meet, all facets of an octave taken as its largest."""
     def spheres(rows):
         middle = vertices[rows].mean(axis=1)
         return middle, np.linalg.norm(vertices[rows] - middle[:, None], axis=2).max(axis=1)
 
+    def within(points, others, reach):
+        """Numbers of the points in the box around the others: most calls are about a few places, which saves the search."""
+        return ((points >= others.min(axis=0) - reach) & (points <= others.max(axis=0) + reach)).all(axis=1).nonzero()[0]
+
     (middle, half), (centre, radius) = spheres(edges), spheres(facets)
-    octave, numbers = np.floor(np.log2(radius)), []
+    octave, numbers = np.floor(np.log2(radius)), [np.empty((2, 0), int)]
     for one in np.unique(octave):
         mine = np.flatnonzero(octave == one)
-        found = cKDTree(centre[mine]).query_ball_point(middle, (half + radius[mine].max()) * (1 + 1e-9))
-        count = np.array([len(near) for near in found])
-        numbers.append((np.repeat(np.arange(len(edges)), count), mine[np.concatenate(found).astype(int)]))
+        reach = (half + radius[mine].max()) * (1 + 1e-9)
+        some = within(middle, centre[mine], reach.max())
+        if len(some):
+            longest = reach[some].max()
+            mine = mine[within(centre[mine], middle[some], longest)]
+            near = cKDTree(centre[mine]).sparse_distance_matrix(cKDTree(middle[some]), longest, output_type="ndarray")
+            near = near[near["v"] <= reach[some[near["j"]]]]
+            numbers.append(np.array([some[near["j"]], mine[near["i"]]]))
     return np.concatenate(numbers, axis=1)
 
 

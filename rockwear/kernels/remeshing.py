@@ -199,9 +199,9 @@ class Mesh:
 
     def _carry(self, keep, gone, part):
         """Take vertex `gone` away to the vertex `keep` beside it, and put it into the longest edge."""
-        has_keep, has_gone = ((self.facets == vertex).any(axis=1) for vertex in (keep, gone))
         if not self._simple(keep, gone):
             return False
+        has_keep, has_gone = ((self.facets == vertex).any(axis=1) for vertex in (keep, gone))
         between, star = np.flatnonzero(has_keep & has_gone), has_keep | has_gone
         origin = self.vertices[keep].copy()
         was = volume(self.vertices, self.facets[star], origin)
@@ -214,7 +214,7 @@ class Mesh:
     def _simple(self, keep, gone):
         """Whether the facets at the edge are all that its ends have in common, so that its loss leaves a surface."""
         j, k = self.around.T
-        common = np.intersect1d(k[j == keep], k[j == gone])
+        common = set(k[j == keep].tolist()).intersection(k[j == gone].tolist())
         return len(common) == (2 if self.dimension == 3 else 0)
 
     def _restore_volume(self, vertex, star, origin, was):
@@ -231,19 +231,19 @@ class Mesh:
     def _split_longest(self, vertex, spare, part):
         """Put `vertex` in the middle of the longest edge, for its facets' sizes, that is not all fixed, with the
         facets `spare` beside it."""
-        d = self.dimension
-        rest = np.setdiff1d(np.arange(len(self.facets)), spare)
-        facets = self.facets[rest]
-        sides = facets[:, None, :] if d == 2 else np.stack([facets, np.roll(facets, -1, axis=1)], axis=2)
-        length = np.linalg.norm(self.vertices[sides[..., 1]] - self.vertices[sides[..., 0]], axis=2)
-        length = np.where(self.fixed[rest, None], 0.0, length / self.size[rest, None])
+        d, facets = self.dimension, self.facets
+        start, end = (facets[:, :1], facets[:, 1:]) if d == 2 else (facets, np.roll(facets, -1, axis=1))
+        length = np.linalg.norm(self.vertices[end] - self.vertices[start], axis=2)
+        length = np.where(self.fixed[:, None], 0.0, length / self.size[:, None])
+        length[spare] = 0.0
         row, side = np.unravel_index(np.argmax(length), length.shape)
         if length[row, side] < 2 * WORTH * part:
             return False
-        i, j = sides[row, side]
-        holders = rest[(facets == i).any(axis=1) & (facets == j).any(axis=1)]
+        i, j = start[row, side], end[row, side]
+        holders = (facets == i).any(axis=1) & (facets == j).any(axis=1)
+        holders[spare] = False
         self.vertices[vertex] = 0.5 * (self.vertices[i] + self.vertices[j])
-        for old, new in zip(holders, spare):
+        for old, new in zip(np.flatnonzero(holders), spare):
             corners = self.facets[old].copy()
             self.facets[old], self.facets[new] = (np.where(corners == end, vertex, corners) for end in (j, i))
             self.pending[old] *= 0.5
@@ -282,7 +282,7 @@ class Mesh:
         """Whether the facets that are another shape than `before` crowd less, lie where the surface was, have turned
         little, fixed ones not at all, and neither close a notch nor run through others."""
         vertices, facets = before["vertices"], before["facets"]
-        other = (self.facets != facets).any(axis=1) | (self.vertices[self.facets] != vertices[facets]).any(axis=(1, 2))
+        other = (self.facets != facets).any(axis=1) | (self.vertices != vertices).any(axis=1)[facets].any(axis=1)
         high = altitudes(self.vertices, self.facets[other]) / self.size[other]
         were_high = altitudes(vertices, facets[other]) / before["size"][other]
         if not other.any() or not high.all() or (1 / high).sum() > RELIEF * (1 / were_high).sum():
@@ -291,14 +291,11 @@ class Mesh:
         off = OFF if part > TIGHT else 0.5
         if distance(old, self.vertices, self.facets[other]).max() > off * self.size[other].min():
             return False
-        self._connect()
         normals, were = (areas / np.linalg.norm(areas, axis=1)[:, None] for areas in (
             area_vectors(self.vertices, self.facets), area_vectors(vertices, facets)))
-        for k in np.flatnonzero(other):
-            near = np.isin(facets, self.facets[k]).sum(axis=1) >= self.dimension - 1
-            least = 1 - 1e-10 if self.fixed[k] else TURN
-            if not (were[near & (before["fixed"] == self.fixed[k])] @ normals[k] > least).any():
-                return False
+        if not self._turned_little(other, normals[other], before, were):
+            return False
+        self._connect()
         if self.notches(self.vertices, normals)[other[self.joined].any(axis=1)].any():
             return False
         moved = np.zeros(len(self.vertices), bool)
@@ -307,6 +304,17 @@ class Mesh:
             return False
         self.refused[moved[self.facets].any(axis=1)] = np.inf
         return True
+
+    def _turned_little(self, other, normals, before, were):
+        """Whether each of the facets `other`, with these normals, looks as one of `before` did that shared two of its
+        corners (in the plane: one) and was fixed or not as it is."""
+        near = np.zeros(len(self.vertices), bool)
+        near[self.facets[other]] = True
+        old = near[before["facets"]].any(axis=1)
+        shared = (before["facets"][old][:, None, :, None] == self.facets[other][None, :, None, :]).any(axis=3).sum(axis=2)
+        alike = (shared >= self.dimension - 1) & (before["fixed"][old][:, None] == self.fixed[other])
+        least = np.where(self.fixed[other], 1 - 1e-10, TURN)
+        return bool((alike & (were[old] @ normals.T > least)).any(axis=0).all())
 
 
 def joined(facets):
