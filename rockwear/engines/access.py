@@ -3,8 +3,8 @@ from yade import InteractionLoop, Law2_ScGeom_FrictViscoPhys_CundallStrackVisco,
 
 
 SLIDING = 1 - 1e-9
-"""|Ft| / mu |Fn| from which a contact slid in this step: YADE's laws return it to Coulomb's limit to round-off. (A looser
-test counts contacts that oscillate near the limit as sliding, and their work adds up.)"""
+"""|Ft| / mu |Fn| from which a contact slid in this step: YADE's laws return it to Coulomb's limit to round-off. (A
+looser test counts contacts that oscillate near the limit as sliding, and their work adds up.)"""
 
 
 def yade_engine(kind):
@@ -14,12 +14,14 @@ def yade_engine(kind):
 
 def law_functor(kind):
     """The contact law of the type `kind` in the scene that is in O now."""
-    return next(functor for functor in yade_engine(InteractionLoop).lawDispatcher.functors if isinstance(functor, kind))
+    functors = yade_engine(InteractionLoop).lawDispatcher.functors
+    return next(functor for functor in functors if isinstance(functor, kind))
 
 
 def geometry_functor(kind):
     """The contact geometry of the type `kind` in the scene that is in O now."""
-    return next(functor for functor in yade_engine(InteractionLoop).geomDispatcher.functors if isinstance(functor, kind))
+    functors = yade_engine(InteractionLoop).geomDispatcher.functors
+    return next(functor for functor in functors if isinstance(functor, kind))
 
 
 def yade_friction_law():

@@ -41,7 +41,8 @@ class BondingNormals:
         return self.normals[n, :, 2].any()
 
     def shear_displacement(self, n, geom, first, second):
-        """Tangential displacement (Vector3, m) of bond n since the normals were set. first, second: states of its bodies."""
+        """Tangential displacement (Vector3, m) of bond n since the normals were set. first, second: states of its
+        bodies."""
         normal, found = geom.normal, Vector3.Zero
         for state, radius, bonded in zip((first, second), (geom.refR1, geom.refR2), self.normals[n].tolist()):
             rotated = state.ori * Vector3(*bonded)
@@ -53,8 +54,8 @@ class BondingNormals:
         return found
 
     def rolled(self, numbers, ends, bodies):
-        """Those of the bonds `numbers` (k,) whose particles have rolled on each other by FULL_ROLL: an angle of more than
-        half a turn could not be distinguished from one of less.
+        """Those of the bonds `numbers` (k,) whose particles have rolled on each other by FULL_ROLL: an angle of more
+        than half a turn could not be distinguished from one of less.
 
         ends: (m, 2) ids of the bodies of all bonds; bodies: ids of all that exist.
         """

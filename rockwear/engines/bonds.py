@@ -308,9 +308,11 @@ class Bonds(Engine):
 
     def restore(self, state):
         self.status, self.normals.normals = state["status"].copy(), state["normals"].copy()
-        self.cracks = [Crack(*row[:7], int(row[7]), row[8], int(row[9]), int(row[10])) for row in state["cracks"].tolist()]
+        self.cracks = [Crack(*row[:7], int(row[7]), row[8], int(row[9]), int(row[10]))
+                       for row in state["cracks"].tolist()]
         self.energy_released = float(state["energy_released"])
-        self.softening_bonds, self.returned = (from_rows(state[name], self.laws) for name in ("softening_bonds", "returned"))
+        self.softening_bonds = from_rows(state["softening_bonds"], self.laws)
+        self.returned = from_rows(state["returned"], self.laws)
 
     def log(self):
         modes = [crack.mode for crack in self.cracks]

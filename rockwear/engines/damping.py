@@ -9,8 +9,8 @@ from rockwear.engines.base import Engine
 class BackgroundDamping(Engine):
     """F = -rate m v and T = -rate I omega on the rock, as its exact solution v(t) = v(0) exp(-rate t) between visits.
 
-    rate: 1/s; bodies: ids. The operator split costs an error of the order (rate x period) and saves a force on each
-    body in each step. The kinetic energy taken is exact: YADE's sum before, times 1 - exp(-2 rate t).
+    rate: 1/s; bodies: ids. The operator split has an error of the order rate x period, and saves a force on each body
+    in each step. The kinetic energy dissipated is exact: YADE's sum before the visit, times 1 - exp(-2 rate t).
     """
 
     name = "background_damping"

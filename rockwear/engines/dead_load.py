@@ -1,4 +1,4 @@
-"""A known load on a led tool: the dead weight of a laboratory test."""
+"""A known load on a tool whose sliding is prescribed: the dead weight of a laboratory test."""
 import numpy as np
 from yade import O
 
@@ -7,16 +7,16 @@ from rockwear.engines.base import Engine
 
 
 class DeadLoad(Engine):
-    """Keeps the tool on the flat y = 0 so that its contacts carry the load: rigid, without inertia, never in the air.
+    """Keeps a rigid tool without inertia at the height over the flat y = 0 at which its contacts carry the load.
 
-    bodies: scene.ToolBodies; load: N; kn: N/m of each contact. The height at which sum kn (overlap)+ = load is found
-    exactly, so that no force is lost while the tool follows its own wear. It settles whenever asked to, in no time; a
-    visit each step would find nothing to do.
+    bodies: the tool's bodies; load: N; kn: N/m of each contact. The height at which sum kn (overlap)+ = load is found
+    exactly, so that no force is lost while the tool wears. The tool settles at once in a visit, which is needed only
+    after its shape has changed.
     """
 
     name = "dead_load"
 
-    def __init__(self, *, bodies, load, kn, period=1):
+    def __init__(self, *, bodies, load, kn, period=None):
         super().__init__(period=period)
         self.bodies, self.load, self.kn = bodies, load, kn
         self.descent = 0.0

@@ -1,4 +1,4 @@
-"""The guard over a run's energy."""
+"""Check of a run's kinetic energy."""
 import math
 
 from yade import O, utils
@@ -7,9 +7,9 @@ from rockwear.engines.base import Engine, RunEnded
 
 
 class EnergyGuard(Engine):
-    """Ends a run whose energy runs away: kinetic energy far above all the work put in, or not a number.
+    """Ends a run whose kinetic energy is far above all the work put in, or not a number.
 
-    work: a function giving the work done on the rock so far (J); floor: J below which nothing is judged.
+    work: a function giving the work done on the rock so far (J); floor: J of work to assume at least.
     """
 
     name = "energy_guard"
@@ -24,4 +24,5 @@ class EnergyGuard(Engine):
         allowed = self.runaway * max(self.work(), self.floor)
         if not math.isfinite(kinetic) or kinetic > allowed:
             raise RunEnded(f"the simulation blew up at t = {O.time:g} s: kinetic energy {kinetic:g} J is not below "
-                           f"{allowed:g} J, {self.runaway:g} times the work done; try a smaller time_step_fraction", False)
+                           f"{allowed:g} J, {self.runaway:g} times the work done; "
+                           "try a smaller time_step_fraction", False)

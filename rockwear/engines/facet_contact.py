@@ -10,21 +10,22 @@ from rockwear.kernels.facet_notch import joined_depth
 from rockwear.kernels.wear_laws import FRICTION, WORK
 
 
-MUTE = 2.0**-100
-"""Factor on the stiffness of a contact that does not count: not zero, which YADE divides by, and exact to undo."""
+INACTIVE = 2.0**-100
+"""Factor on the stiffness of an inactive contact: not zero, by which YADE would divide, and exact to undo."""
 
-SILENT = 1e-9
-"""N/m, stiffness below which a contact is one of these. So YADE's own scene says which are muted, saved ones too."""
+INACTIVE_STIFFNESS = 1e-9
+"""N/m, stiffness below which a contact is inactive. So YADE's scene tells which are, also after it was saved."""
 
-FACE = 1 - 1e-13
-"""Cosine between a contact's and its facet's normal above which the facet is touched inside, not at its rim."""
+INSIDE = 1 - 1e-13
+"""Cosine between the normals of a contact and its facet above which the contact lies inside the facet, not on its
+rim."""
 
 SHALLOW = 0.8
-"""Cosine between neighbouring facets above which an inner edge is no corner: a particle whose overlap is more than
-1 - SHALLOW of its radius would leave one of the two, past the edge, while it still presses there."""
+"""Cosine between adjacent facets above which a notch counts as one surface: a particle whose overlap is more than
+1 - SHALLOW of its radius would lose the contact with one of the two, beyond the edge, while it still presses there."""
 
 SLIP = (FRICTION, 0.0)
-"""The sum that is the way slid."""
+"""The sum that is the sliding distance."""
 
 EVEN = 1e-9
 """Two contacts are equally deep if their depths differ by less than this part of the particle's radius."""
@@ -33,20 +34,20 @@ EVEN = 1e-9
 class FacetContact(ToolContact):
     """ToolContact of a tool of facets, where a particle at an edge touches several facets and yet only one surface.
 
-    Of the contacts of one particle, one at the rim of its facet counts for nothing as long as a neighbouring facet is
-    touched more deeply: it is the same contact seen from next door. It is muted. When the particle goes on to that
-    facet, the contact there takes over the shear force, turned to the new normal, so that neither the history nor the
-    energy of the sliding contact is lost. Two facets of an inner corner are both touched inside, and both count. Where
-    they are nearly in one plane (SHALLOW) only the deeper one does: within a strip as wide as its overlap times their
-    angle a particle would meet the force of two faces, and at its end lose one with all its energy. Where both are
-    about equally deep the contact is one with their joined depth (kernels.inner_edge): `notches` are these pairs
-    (facet that counts, facet beside it, particle). Coulomb's limit there is that of the depth in the facet that counts.
+    Of the contacts of one particle, one on the rim of its facet is inactive while an adjacent facet is touched more
+    deeply: it is a duplicate reported by the facet beside. When the particle moves on to that facet, the contact there
+    takes over the shear force, rotated to the new normal, so that the history and the energy of the sliding contact
+    are kept. Two facets of a notch are both touched inside, and both contacts are active. Where the facets are nearly
+    in one plane (SHALLOW) only the deeper one is: otherwise, within a strip as wide as its overlap times the angle, a
+    particle would feel the force of two facets, and at the end of the strip lose one with all its energy. Where both
+    are about equally deep they act as one contact with their joined depth (kernels.facet_notch): `notches` are these
+    pairs (active facet, facet beside it, particle). Coulomb's limit there is that of the depth in the active facet.
 
-    Where the shape has changed, particles touch other facets in the next step, or more deeply, than they did. `born` is
-    the energy, J, with which such contacts begin: no work has been done for it.
+    When the shape has changed, particles touch other facets in the next step, or more deeply. `reshaping_energy` (J) is
+    that with which such contacts begin.
 
-    YADE's account of friction is one for rock and tool here: `in_yade_balance` is the tool's part of it, slip times the force
-    after it. Every step is to be sampled.
+    YADE's sum of plastic dissipation is one for rock and tool here: `in_yade_balance` is the tool's part of it, slip
+    times the force after it. Every step is sampled.
     """
 
     def __init__(self, *, neighbours, needs=(WORK,), **common):
@@ -63,25 +64,25 @@ class FacetContact(ToolContact):
         super().find_contacts()
         groups = {}
         for contact in self.possible:
-            groups.setdefault(contact[2], []).append(contact)
+            groups.setdefault(contact.rock, []).append(contact)
         self.shared = [(rock, group) for rock, group in sorted(groups.items()) if len(group) > 1]
 
     def act(self):
         if self.collider.numAction != self.collided:
             self.find_contacts()
-        fixed = self._energy(known=self.springs) if self.reshaped else 0.0
+        stored = self._energy(known=self.shear_before) if self.reshaped else 0.0
         self.notches = []
-        successions = [pair for rock, group in self.shared for pair in self._judge(rock, group)]
+        successions = [pair for rock, group in self.shared for pair in self._select(rock, group)]
         self._sample_all()
-        acting = {new[1:3]: old for old, new in successions}
+        acting = {pieces(new): old for old, new in successions}
         for one, other in self._pairs():
-            self._join(one, other, acting.get(one[1:3], one))
+            self._join(one, other, acting.get(pieces(one), one))
         for old, new in successions:
-            self._hand_over(old, new)
+            transfer(old, new)
         if self.reshaped:
-            self.reshaping_energy += self._energy() - fixed
+            self.reshaping_energy += self._energy() - stored
         self.reshaped = False
-        self._note_springs()
+        self._store_shear()
 
     def shape_has_changed(self):
         """The contacts of the next step are those with another shape."""
@@ -89,114 +90,112 @@ class FacetContact(ToolContact):
 
     def _energy(self, known=None):
         """J in the springs of contacts, or of those `known`, at the depths that YADE has found in this step."""
-        return self._stored((contact[0] for contact in self.possible
-                             if contact[0].isReal and (known is None or contact[1:3] in known)), as_found)
+        return self._stored((contact.interaction for contact in self.possible
+                             if contact.interaction.isReal and (known is None or pieces(contact) in known)), as_found)
 
-    def _stored(self, interactions, meeting):
-        """J in the springs of these contacts and in what is joined. meeting: as_found or the like."""
-        return (contact_energy(interactions, lambda interaction: meeting(interaction)[0])
-                + math.fsum(self._joined_energy(pair, meeting) for pair in self._pairs()))
+    def _stored(self, interactions, depth_of):
+        """J in the springs of these contacts and of joined ones. depth_of: as_found or the like."""
+        return (contact_energy(interactions, lambda interaction: depth_of(interaction)[0])
+                + math.fsum(self._joined_energy(pair, depth_of) for pair in self._pairs()))
 
     def _pairs(self):
-        """The contacts of the notches: [(contact that counts, contact beside it)]."""
-        real = {contact[1:3]: contact for contact in self.possible if contact[0].isReal} if self.notches else {}
+        """The contacts of the notches: [(active contact, contact beside it)]."""
+        if not self.notches:
+            return []
+        real = {pieces(contact): contact for contact in self.possible if contact.interaction.isReal}
         found = [(real.get((one, rock)), real.get((other, rock))) for one, other, rock in self.notches]
         return [pair for pair in found if None not in pair]
 
-    def _book(self, contact, before, after, slip):
-        if not muted(contact):
-            super()._book(contact, before, after, slip)
+    def _add_slip(self, contact, before, after, slip):
+        if not inactive(contact):
+            super()._add_slip(contact, before, after, slip)
             self.in_yade_balance += slip * after
 
-    def _judge(self, rock, group):
-        """Silence the contacts of a particle that have just come to be and count for nothing; wake what counts and has
-        no predecessor. -> pairs (contact, its successor)."""
-        real = [contact for contact in group if contact[0].isReal]
+    def _select(self, rock, group):
+        """Make new duplicates among the contacts of a particle inactive, and others active that have no predecessor.
+        -> pairs (contact, its successor)."""
+        real = [contact for contact in group if contact.interaction.isReal]
         if len(real) < 2:
             for contact in real:
-                self._wake(contact)
+                activate(contact)
             return []
-        standing, doubled = self._ranked(rock, real)
-        self.notches += [(one[1], other[1], rock) for one in standing for other in self._beside(one, doubled)]
-        ending = [contact for contact in doubled if not muted(contact)]
+        counting, duplicates = self._ranked(rock, real)
+        self.notches += [(one.piece, other.piece, rock) for one in counting for other in self._beside(one, duplicates)]
+        ending = [contact for contact in duplicates if not inactive(contact)]
         successions = []
-        for new in standing:
-            if muted(new):
-                old = next((contact for contact in ending if contact[1] in self.neighbours[new[1]]), None)
+        for new in counting:
+            if inactive(new):
+                old = next((contact for contact in ending if contact.piece in self.neighbours[new.piece]), None)
                 if old is None:
-                    self._wake(new)
+                    activate(new)
                 else:
                     ending.remove(old)
                     successions.append((old, new))
         for contact in ending:
             self._cancel(contact)
-            self._silence(contact)
+            deactivate(contact)
         return successions
 
     def _ranked(self, rock, real):
-        """Contacts that count, and those that a neighbouring facet's deeper contact makes double."""
+        """Contacts that count, and the duplicates of an adjacent facet's deeper contact."""
         even = EVEN * O.bodies[rock].shape.radius
         rows = []
         for contact in real:
-            # Of equally deep ones the one inside its facet stands first, then the one that counts already.
-            rows.append((-round(contact[0].geom.penetrationDepth / even), not self._inside(contact),
-                         muted(contact), contact[1], contact))
+            # Of equally deep ones those inside their facet come first, then those that are active already.
+            rows.append((-round(contact.interaction.geom.penetrationDepth / even), not self._inside(contact),
+                         inactive(contact), contact.piece, contact))
         rows.sort(key=lambda row: row[:4])
-        standing, doubled, before = [], [], []
-        for _, outside, _, index, contact in rows:
-            normal = contact[0].geom.normal
-            same = any(index in self.neighbours[other[1]] and (outside or normal.dot(other[0].geom.normal) > SHALLOW)
-                       for other in before)
-            (doubled if same else standing).append(contact)
+        counting, duplicates, before = [], [], []
+        for _, outside, _, piece, contact in rows:
+            normal = contact.interaction.geom.normal
+            same = any(piece in self.neighbours[other.piece]
+                       and (outside or normal.dot(other.interaction.geom.normal) > SHALLOW) for other in before)
+            (duplicates if same else counting).append(contact)
             before.append(contact)
-        return standing, doubled
+        return counting, duplicates
 
-    def _beside(self, one, doubled):
-        """[the one of the doubled contacts that is joined with contact `one`, or has acted for it], or none."""
-        near = [(parts, other[1], other) for other in doubled if other[1] in self.neighbours[one[1]]
-                for parts in [self._joined(one, other, as_found)[1]] if parts and (parts[0] < 1 or not muted(other))]
+    def _beside(self, one, duplicates):
+        """[the duplicate that is joined with contact `one`, or has acted for it], or none."""
+        near = [(parts, other.piece, other) for other in duplicates if other.piece in self.neighbours[one.piece]
+                for parts in [self._joined(one, other, as_found)[1]] if parts and (parts[0] < 1 or not inactive(other))]
         return [other for _, _, other in sorted(near, key=lambda row: row[:2])[:1]]
 
-    def _joined(self, one, other, meeting):
-        """(joined depth, its parts) of two contacts; (0, None) where one is open. meeting: as_found or the like.
+    def _joined(self, one, other, depth_of):
+        """(joined depth, its derivatives) of two contacts; (0, None) where one is open. depth_of: as_found or the like.
 
-        Only those inside of both facets are joined: at a rim the angle would change with the place, and none of it is a
-        potential's.
+        Only contacts inside both facets are joined: on a rim the angle would change with the position, and the force
+        would have no potential.
         """
-        (first, along), (second, aside) = meeting(one[0]), meeting(other[0])
+        (first, along), (second, aside) = depth_of(one.interaction), depth_of(other.interaction)
         if min(first, second) <= 0:
             return 0.0, None
-        inside = self._looks_along(one, along) and self._looks_along(other, aside)
+        inside = self._along_normal(one, along) and self._along_normal(other, aside)
         return joined_depth(first, second, abs(along.dot(aside)) if inside else 1.0)
 
     def _inside(self, contact):
-        return self._looks_along(contact, contact[0].geom.normal)
+        return self._along_normal(contact, contact.interaction.geom.normal)
 
-    def _looks_along(self, contact, direction):
-        body = O.bodies[self.tool.body_of[contact[1]]]
-        return abs(direction.dot(body.state.ori * body.shape.normal)) > FACE
+    def _along_normal(self, contact, direction):
+        body = O.bodies[self.tool.body_of[contact.piece]]
+        return abs(direction.dot(body.state.ori * body.shape.normal)) > INSIDE
 
     def contact_inside_tool(self):
-        """Where (x, y, z in m) a particle that counts touches a facet inside its rim from within the tool, or None.
+        """Where (x, y, z in m) a particle touches a facet, inside its rim, from within the tool; None without any.
 
-        YADE's facets have two sides. The normal of a contact runs from its first body to the second.
+        YADE's facets have two sides. The normal of a contact points from its first body to the second.
         """
         for contact in self.possible:
-            interaction, index, _, tool_first = contact
-            if interaction.isReal and not muted(contact) and self._inside(contact):
-                body = O.bodies[self.tool.body_of[index]]
-                outward = body.state.ori * Vector3(*self.tool.outward(index))
+            interaction, piece, _, tool_first = contact
+            if interaction.isReal and not inactive(contact) and self._inside(contact):
+                body = O.bodies[self.tool.body_of[piece]]
+                outward = body.state.ori * Vector3(*self.tool.outward(piece))
                 if (interaction.geom.normal.dot(outward) > 0) != tool_first:
                     return "({:.4g}, {:.4g}, {:.4g}) m".format(*interaction.geom.contactPoint)
         return None
 
-    def _wake(self, contact):
-        if muted(contact):
-            phys = contact[0].phys
-            phys.kn, phys.ks, phys.cn = phys.kn / MUTE, phys.ks / MUTE, phys.cn / MUTE
-
     def _cancel(self, contact):
-        """Take the contact's force off the particle in this step, and its friction off YADE's account."""
+        """Take the contact's force off the particle in this step, and its friction off YADE's sum of plastic
+        dissipation."""
         interaction, _, rock, tool_first = contact
         counted = self._slip(contact)[1] * interaction.phys.shearForce.norm()
         self.functor.initPlasticDissipation(self.functor.plasticDissipation() - counted)
@@ -205,47 +204,31 @@ class FacetContact(ToolContact):
         O.forces.addF(rock, force)
         O.forces.addT(rock, (interaction.geom.contactPoint - O.bodies[rock].state.pos).cross(force))
 
-    def _silence(self, contact):
-        phys = contact[0].phys
-        phys.kn, phys.ks, phys.cn = phys.kn * MUTE, phys.ks * MUTE, phys.cn * MUTE
-        phys.normalForce = phys.shearForce = phys.normalViscous = Vector3.Zero
-
-    def _hand_over(self, old, new):
-        shear = Vector3(old[0].phys.shearForce)
-        size, normal = shear.norm(), new[0].geom.normal
-        self._silence(old)
-        self._wake(new)
-        turned = shear - normal * shear.dot(normal)
-        if size > 0 and turned.norm() > 0:
-            if old[3] != new[3]:
-                turned = -turned
-            new[0].phys.shearForce = turned * (size / turned.norm())
-
     def _join(self, one, other, acting):
-        """Put the force of the joined depth of two contacts in place of that of the contact that has acted in this step."""
+        """Put the force of the joined depth of two contacts in place of that of the contact that acts in this step."""
         depth, parts = self._joined(one, other, as_found)
-        if parts is None or muted(acting) or acting[0].phys.normalForce.norm() < SILENT:
+        if parts is None or inactive(acting) or acting.interaction.phys.normalForce.norm() < INACTIVE_STIFFNESS:
             return
-        _, index, rock, _ = acting
-        force = (inwards(one) * (depth * parts[0]) + inwards(other) * (depth * parts[1])
-                 - inwards(acting) * acting[0].geom.penetrationDepth) * acting[0].phys.kn
+        interaction, piece, rock, tool_first = acting
+        force = (outwards(one) * (depth * parts[0]) + outwards(other) * (depth * parts[1])
+                 - outwards(acting) * interaction.geom.penetrationDepth) * interaction.phys.kn
         O.forces.addF(rock, force)
         self.impulse -= np.array(force) * O.dt
-        self.work_done += force.dot(Vector3(*self.tool.velocity_at(index, acting[0], acting[3]))) * O.dt
+        self.work_done += force.dot(Vector3(*self.tool.velocity_at(piece, interaction, tool_first))) * O.dt
 
-    def _joined_energy(self, pair, meeting):
-        """J that the joined depth of two contacts holds more than the one of them that counts."""
-        counting, (depth, parts) = pair[1] if muted(pair[0]) else pair[0], self._joined(*pair, meeting)
-        if parts is None or muted(counting):
+    def _joined_energy(self, pair, depth_of):
+        """J that the joined depth of two contacts holds more than the active one of them."""
+        active, (depth, parts) = pair[1] if inactive(pair[0]) else pair[0], self._joined(*pair, depth_of)
+        if parts is None or inactive(active):
             return 0.0
-        return 0.5 * counting[0].phys.kn * (depth**2 - meeting(counting[0])[0]**2)
+        return 0.5 * active.interaction.phys.kn * (depth**2 - depth_of(active.interaction)[0]**2)
 
     def elastic_energy(self):
         return self._stored((i for body in self.tool.ids for i in O.interactions.withBody(body)), self.tool.meeting)
 
     def state(self):
-        return {**super().state(), "in_yade_balance": self.in_yade_balance, "reshaping_energy": self.reshaping_energy, "reshaped": self.reshaped,
-                "notches": np.array(self.notches, int).reshape(-1, 3)}
+        return {**super().state(), "in_yade_balance": self.in_yade_balance, "reshaping_energy": self.reshaping_energy,
+                "reshaped": self.reshaped, "notches": np.array(self.notches, int).reshape(-1, 3)}
 
     def restore(self, state):
         super().restore(state)
@@ -254,14 +237,46 @@ class FacetContact(ToolContact):
         self.notches = [tuple(row) for row in state["notches"].tolist()]
 
 
-def muted(contact):
-    """Whether this entry (interaction, facet, particle, facet first) of the contacts is muted."""
-    return contact[0].phys.kn < SILENT
+def pieces(contact):
+    """(facet, particle) of a contact."""
+    return contact[1:3]
 
 
-def inwards(contact):
-    """Direction (-) in which a contact presses the particle."""
-    return contact[0].geom.normal if contact[3] else -contact[0].geom.normal
+def inactive(contact):
+    """Whether the contact counts for nothing."""
+    return contact[0].phys.kn < INACTIVE_STIFFNESS
+
+
+def activate(contact):
+    """Let an inactive contact act from the next step on."""
+    if inactive(contact):
+        phys = contact.interaction.phys
+        phys.kn, phys.ks, phys.cn = phys.kn / INACTIVE, phys.ks / INACTIVE, phys.cn / INACTIVE
+
+
+def deactivate(contact):
+    """Make a contact inactive and free of force."""
+    phys = contact.interaction.phys
+    phys.kn, phys.ks, phys.cn = phys.kn * INACTIVE, phys.ks * INACTIVE, phys.cn * INACTIVE
+    phys.normalForce = phys.shearForce = phys.normalViscous = Vector3.Zero
+
+
+def transfer(old, new):
+    """Transfer the shear force of contact `old`, which becomes inactive, to its successor."""
+    shear = Vector3(old.interaction.phys.shearForce)
+    size, normal = shear.norm(), new.interaction.geom.normal
+    deactivate(old)
+    activate(new)
+    rotated = shear - normal * shear.dot(normal)
+    if size > 0 and rotated.norm() > 0:
+        if old.tool_first != new.tool_first:
+            rotated = -rotated
+        new.interaction.phys.shearForce = rotated * (size / rotated.norm())
+
+
+def outwards(contact):
+    """Direction in which a contact pushes the particle, out of the tool."""
+    return contact.interaction.geom.normal if contact.tool_first else -contact.interaction.geom.normal
 
 
 def as_found(interaction):

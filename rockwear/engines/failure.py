@@ -3,7 +3,7 @@ from rockwear.engines.base import Engine, RunEnded
 
 
 class Failure(Engine):
-    """Ends the run when, with bonds broken, the stress has fallen to a part `drop` of its peak.
+    """Ends the run when the stress has fallen to a part `drop` of its peak and bonds are broken.
 
     stress: a function giving it (Pa); broken: a function telling whether any bond is broken.
     """

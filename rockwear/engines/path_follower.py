@@ -5,10 +5,10 @@ from rockwear.engines.base import Engine
 
 
 class PathFollower(Engine):
-    """Leads a tool that turns along its path, chord by chord (a straight one needs no leading).
+    """Sets the velocities of a tool that turns, for one chord of its path after the other (a straight path needs none).
 
-    bodies: scene.ToolBodies; clock: a function giving the time (s) along the path that YADE's positions have now;
-    period: steps between visits.
+    bodies: the tool's bodies; clock: a function giving the time (s) along the path that YADE's positions have now;
+    period: steps between visits, and of a chord.
     """
 
     name = "path_follower"
@@ -18,5 +18,5 @@ class PathFollower(Engine):
         self.bodies, self.clock = bodies, clock
 
     def act(self):
-        # This engine comes after the integrator: positions are already those of the next step.
+        # After the integrator positions are already those of the next step.
         self.bodies.aim(self.clock() + O.dt, self.period * O.dt)

@@ -7,10 +7,10 @@ from rockwear.engines.base import Engine
 
 
 class Platens(Engine):
-    """Two sets of bodies led along x, the right ones with `velocity` (m/s), the left ones with its opposite.
+    """Two sets of bodies whose velocity along x is prescribed: `velocity` (m/s) on the right, its opposite on the left.
 
     left, right: ids. Pull is the force (N) that the platens exert outwards on the specimen, the mean of both ends;
-    positive in tension. To be visited after the integrator, when the forces of the step are complete.
+    positive in tension.
     """
 
     name = "platens"

@@ -48,10 +48,10 @@ class RockContacts(Engine):
 class RockFriction(RockContacts):
     """Friction work between rock particles, by particle, sampled at each visit.
 
-    A contact that slides dissipates |Ft| times the irreversible slip [Rojek 2014, eq. 36], which is the slip less what a
-    rising limit mu |Fn| lets the spring take up. The force of a step works over the mean of the velocities before and
-    after the integrator, whose change `motion` predicts. (YADE's sum of plastic dissipation is not used: it takes the
-    force after the slip for the mean force, and omits the shear spring of a contact that opens. Where particles
+    A contact that slides dissipates |Ft| times the irreversible slip [Rojek 2014, eq. 36], which is the slip less what
+    a rising limit mu |Fn| lets the spring take up. The force of a step works over the mean of the velocities before
+    and after the integrator, whose change `motion` predicts. (YADE's sum of plastic dissipation is not used: it takes
+    the force after the slip for the mean force, and omits the shear spring of a contact that opens. Where particles
     collide, each time for a few steps, it misses a fifth of the work.)
     """
 

@@ -1,4 +1,4 @@
-"""Bonds that turn fast: their shear springs turn with them."""
+"""Rotation of the shear springs of bonds that rotate fast."""
 import numpy as np
 from yade import O, Subdomain, Vector3
 
@@ -7,17 +7,18 @@ from rockwear.engines.base import START, Engine
 from rockwear.engines.bonds import INTACT
 
 FAST = 0.01
-"""Angle (rad) a step from which a bond counts as turning fast. In steps of 30 us slower chips gain energy at less than
-0.2 of it a second; the default background damping takes 40 a second."""
-LOOKING_PERIOD = 100
-"""Steps between looks for such bonds."""
+"""Angle (rad) a step from which a bond counts as rotating fast. In steps of 30 us slower chips gain less than 0.2 of
+their energy a second; the default background damping takes 40 times it a second."""
+SEARCH_PERIOD = 100
+"""Steps between searches for such bonds."""
 
 
 class ShearRotation(Engine):
-    """Corrects YADE's shear rule where bonds turn fast (kernels.turning): chips that angular_velocity would gain energy.
+    """Corrects YADE's rule for shear where bonds rotate fast (kernels.shear_rotation): spinning chips would gain
+    energy.
 
     bonds: engines.bonds.Bonds, in space and with shear that follows the points of contact; radii: (n,) m of the bodies
-    0..n-1. To be visited at the beginning of a step: what it writes is what YADE's law starts from.
+    0..n-1. YADE's law starts from what it writes at the beginning of a step.
     """
 
     name = "shear_rotation"
@@ -29,8 +30,8 @@ class ShearRotation(Engine):
         self.fast = np.zeros(0, int)
 
     def act(self):
-        if O.iter % LOOKING_PERIOD == 0:
-            self._look()
+        if O.iter % SEARCH_PERIOD == 0:
+            self._find_fast()
         fast = self.fast[self.bonds.status[self.fast] == INTACT]
         if not len(fast):
             return
@@ -43,7 +44,7 @@ class ShearRotation(Engine):
         for phys, force in zip(contacts, found.tolist()):
             phys.shearForce = Vector3(*force)
 
-    def _look(self):
+    def _find_fast(self):
         intact = np.flatnonzero(self.bonds.status == INTACT)
         rates = turning_rates(*self._motion(self.bonds.ends[intact].T))
         self.fast = intact[rates * O.dt > FAST]

@@ -1,14 +1,15 @@
-"""What the integrator is about to add to velocities in this step."""
+"""Increments of velocity that the integrator will apply in this step."""
 from yade import O
 
 
 class VelocityIncrement:
-    """What YADE's integrator is about to add to velocities in this step, from the forces that stand now.
+    """Increments of velocity that YADE's integrator will apply in this step, from the forces summed so far.
 
-    masses: (n,) kg, inertias: (n,) kg m2, radii: (n,) m of the bodies 0..n-1; held: (n,) bool, bodies that do not move;
-    gravity: Vector3, m/s2, None for none.
-    Forces of a leapfrog step do the work F (v_before + v_after) / 2 dt; near critical damping, or where a contact lasts
-    a few steps, taking v_before for the mean is off by a third.
+    masses: (n,) kg, inertias: (n,) kg m2, radii: (n,) m of the bodies 0..n-1; fixed: (n,) bool, bodies that do not
+    move; gravity: Vector3, m/s2, None for none.
+
+    The forces of a leapfrog step do the work F (v_before + v_after) / 2 dt. Near critical damping, or where a contact
+    lasts a few steps, v_before in place of the mean is wrong by a third.
     """
 
     def __init__(self, *, masses, inertias, radii, fixed, gravity=None):

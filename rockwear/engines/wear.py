@@ -1,4 +1,4 @@
-"""Archard wear of a tool of particles, and their removal."""
+"""Archard wear of a tool of particles, and the removal of worn particles."""
 import math
 import numpy as np
 
@@ -7,24 +7,30 @@ from rockwear.kernels.wear_laws import WORK
 
 
 class WearEngine(Engine):
-    """What wear of a tool of particles and of facets has in common.
+    """Base of wear of a tool of particles and of facets.
 
-    contact: the ToolContact that says where and under what force the tool slides; law: of kernels.wear_laws, accelerated;
-    count: pieces (particles, facets) of the tool. `events` counts for each piece how often a contact began to rub it, as
-    far as visits can tell them apart; `worn` (count,) is the volume in m3 worn off it, whatever it had to give, `limit`
-    that at which it is gone: what R's rules are judged by. volume_unit: of what is recorded.
+    contact: the ToolContact that gives where and under what force the tool slides; law: of kernels.wear_laws,
+    accelerated; hardness: kernels.archard.Hardness; temperature: a function giving (m,) K of the pieces (particles,
+    facets); count: of pieces; volume_unit: of what is recorded.
+
+    `events` counts for each piece how often a contact began to slide on it, as far as visits can tell them apart;
+    `worn` (count,) is the volume in m3 worn off it by the law, `limit` that at which it is gone: what the rules of
+    [Rocky] are judged by.
     """
 
     name = "wear"
 
-    def __init__(self, *, contact, law, count, volume_unit="m3/m", period=1):
+    def __init__(self, *, contact, law, hardness, temperature, count, volume_unit="m3/m", period=1):
         super().__init__(period=period)
         self.contact, self.law, self.volume_unit = contact, law, volume_unit
+        self.hardness, self.temperature = hardness, temperature
+        self.coldest, self.hottest = math.inf, -math.inf
         self.contact_energy_removed = self.work_used = 0.0
         self.events, self.rubbed = np.zeros(count, int), np.zeros(count, bool)
 
     def take_slid(self):
-        """What slid since the last visit, its work and the contacts that have begun counted; None without any."""
+        """What slid since the last visit, see ToolContact.take_slid, counted as work and events; None if nothing
+        did."""
         slid = self.contact.take_slid()
         rubbed = self.at_places(slid[WORK]) > 0
         self.events += rubbed & ~self.rubbed
@@ -35,34 +41,45 @@ class WearEngine(Engine):
         return slid
 
     def at_places(self, values):
-        """What `values` (count,) of the pieces are for the pieces as they were made."""
+        """What `values` (m,) of the present pieces are for the pieces of the initial shape."""
         return values
 
+    def hardness_now(self, slid):
+        """(m,) Pa at the present temperatures, of which those that wear count for `warnings`."""
+        temperature = self.temperature()
+        worn = temperature[slid[WORK] > 0]
+        self.coldest, self.hottest = min(self.coldest, float(worn.min())), max(self.hottest, float(worn.max()))
+        return self.hardness.nearest(temperature)
+
     def warnings(self):
-        """Lines on what in this run's wear is not to be relied on."""
-        return []
+        """A line where worn pieces had temperatures (K) beyond the hardness table."""
+        if not self.hardness.leaves(self.coldest, self.hottest):
+            return []
+        first, last = self.hardness.limits
+        return [f"what wore, at {self.coldest:.1f} to {self.hottest:.1f} K, leaves the hardness table "
+                f"({first:g} to {last:g} K): the nearest row holds"]
 
     def state(self):
         return {"contact_energy_removed": self.contact_energy_removed, "work_used": self.work_used,
-                "events": self.events.copy(), "rubbed": self.rubbed.copy()}
+                "events": self.events.copy(), "rubbed": self.rubbed.copy(),
+                "coldest": self.coldest, "hottest": self.hottest}
 
     def restore(self, state):
-        self.contact_energy_removed, self.work_used = float(state["contact_energy_removed"]), float(state["work_used"])
+        for name in ("contact_energy_removed", "work_used", "coldest", "hottest"):
+            setattr(self, name, float(state[name]))
         self.events, self.rubbed = state["events"].copy(), state["rubbed"].copy()
 
 
 class Wear(WearEngine):
-    """Wear with H(theta) by the laws of M 6.3-6.4 (P 61), and the removal of particles worn away.
+    """Wear with H(theta) by the laws of [Rojek 2003, sec. 6.3-6.4; Rojek 2014, eq. 61], and removal of worn particles.
 
-    erosion: kernels.erosion.Erosion of the tool; temperature: a function giving (m,) K of the tool particles.
+    erosion: kernels.erosion.Erosion of the tool; tool: its bodies; on_removal(worn, loose): called with the particles
+    that were removed because they were worn away, and because nothing holds them any more.
     """
 
-    def __init__(self, *, contact, erosion, tool, law, hardness, temperature, on_removal, **common):
-        super().__init__(contact=contact, law=law, count=tool.count, **common)
-        self.erosion, self.tool = erosion, tool
-        self.hardness, self.temperature = hardness, temperature
-        self.on_removal = on_removal
-        self.coldest, self.hottest = math.inf, -math.inf
+    def __init__(self, *, erosion, tool, on_removal, **common):
+        super().__init__(count=tool.count, **common)
+        self.erosion, self.tool, self.on_removal = erosion, tool, on_removal
 
     @property
     def worn(self):
@@ -76,11 +93,7 @@ class Wear(WearEngine):
         slid = self.take_slid()
         if slid is None:
             return
-        temperature = self.temperature()
-        met = temperature[self.rubbed]
-        self.coldest, self.hottest = min(self.coldest, float(met.min())), max(self.hottest, float(met.max()))
-        volume = self.law.volume(slid, self.hardness.nearest(temperature), self.erosion.areas)
-        removed, uncovered = self.erosion.wear(volume)
+        removed, uncovered = self.erosion.wear(self.law.volume(slid, self.hardness_now(slid), self.erosion.areas))
         if removed:
             self._remove(removed, uncovered)
 
@@ -92,21 +105,12 @@ class Wear(WearEngine):
         self.tool.add([i for i in uncovered if self.erosion.alive[i]])
         self.on_removal(removed, loose)
 
-    def warnings(self):
-        """A line where what was worn had temperatures (K) beyond the table of hardness."""
-        if not self.hardness.leaves(self.coldest, self.hottest):
-            return []
-        first, last = self.hardness.limits
-        return [f"what wore, at {self.coldest:.1f} to {self.hottest:.1f} K, leaves the hardness table ({first:g} to {last:g} K): "
-                "the nearest row holds"]
-
     def state(self):
-        return {**super().state(), **self.erosion.state(), "coldest": self.coldest, "hottest": self.hottest}
+        return {**super().state(), **self.erosion.state()}
 
     def restore(self, state):
         super().restore(state)
         self.erosion.restore(state)
-        self.coldest, self.hottest = float(state["coldest"]), float(state["hottest"])
 
     def log(self):
         return {"mass_lost": (self.erosion.mass_fraction_lost, "-"),

@@ -1,4 +1,4 @@
-"""Where along the tool's outline wear happens."""
+"""Distribution of wear along the tool's outline."""
 import math
 import numpy as np
 
@@ -6,10 +6,11 @@ from rockwear.engines.base import Engine
 
 
 class WearProfile(Engine):
-    """Where along the tool's first outline wear happened, span of time by span: what R's rules are judged by.
+    """Volume worn off each place along the tool's initial outline in each interval between visits, the `increments`:
+    what the rules of [Rocky] are judged by.
 
-    A cycle that begins with the tool and the rock of the last one repeats it and samples nothing new: its wear is added to
-    the spans of the last one.
+    A cycle that begins with the same tool and rock as the last one repeats it and gives no new samples: its wear is
+    added to the intervals of the last one.
 
     wear: a WearEngine; place: (m,) number of the place that each piece of its tool belongs to.
     """
@@ -22,31 +23,31 @@ class WearProfile(Engine):
         self.clear()
 
     def clear(self):
-        """Begin a record of nothing."""
-        self.increments, self.booked = [], np.zeros(self.places)
-        self.span = self.cycle = 0
+        """Begin a new record."""
+        self.increments, self.worn = [], np.zeros(self.places)
+        self.interval = self.cycle = 0
         self.shape = math.nan
 
     def begin_cycle(self, shape):
-        """A cycle begins, in the rock that all cycles begin in. shape: a number that differs where the tool's shape does."""
+        """A cycle begins, in the same rock as all cycles. shape: a number that differs where the tool's shape does."""
         if shape == self.shape:
-            self.span = self.cycle
+            self.interval = self.cycle
         else:
-            self.span = self.cycle = len(self.increments)
+            self.interval = self.cycle = len(self.increments)
         self.shape = shape
 
     def act(self):
         now = np.bincount(self.place, self.wear.worn, self.places)
-        if self.span == len(self.increments):
+        if self.interval == len(self.increments):
             self.increments.append(np.zeros(self.places))
-        self.increments[self.span] += now - self.booked
-        self.span += 1
-        self.booked = now
+        self.increments[self.interval] += now - self.worn
+        self.interval += 1
+        self.worn = now
 
     def state(self):
-        return {"increments": np.array(self.increments).reshape(-1, self.places), "booked": self.booked.copy(),
-                "span": self.span, "cycle": self.cycle, "shape": self.shape}
+        return {"increments": np.array(self.increments).reshape(-1, self.places), "worn": self.worn.copy(),
+                "interval": self.interval, "cycle": self.cycle, "shape": self.shape}
 
     def restore(self, state):
-        self.increments, self.booked = list(state["increments"].copy()), state["booked"].copy()
-        self.span, self.cycle, self.shape = int(state["span"]), int(state["cycle"]), float(state["shape"])
+        self.increments, self.worn = list(state["increments"].copy()), state["worn"].copy()
+        self.interval, self.cycle, self.shape = int(state["interval"]), int(state["cycle"]), float(state["shape"])

@@ -68,7 +68,7 @@ class FacetCutting(Cutting):
         self.contact = FacetContact(tool=self.bodies, motion=motion, needs=self.wear_law.needs, neighbours=tool.boundary.neighbours())
         self.rock_friction = RockFriction(bonds=self.bonds, motion=motion)
         self.wear = FacetWear(contact=self.contact, boundary=tool.boundary, tool=self.bodies, law=self.wear_law,
-                              hardness=self.hardness(v.tool_temperature), work_fraction=v.work_fraction,
+                              hardness=self.hardness, temperature=self._tool_temperature, work_fraction=v.work_fraction,
                               reshape=v.reshape, wear_acceleration=v.wear_acceleration, volume_unit=self.volume_unit)
 
     def _profile(self):

@@ -186,7 +186,7 @@ def test_wear_too_fast_for_the_shape_ends_with_what_to_change(tmp_path):
     wear_acceleration, run = next((value, run) for value, run in runs if run.code)
     assert run.code == 1
     said = next(line for line in run.stderr.splitlines() if line.startswith("error:"))
-    assert "would recede by" in said and f"lower acceleration = {wear_acceleration:g}" in said and "Traceback" not in run.stderr
+    assert "would recede by" in said and f"lower wear_acceleration = {wear_acceleration:g}" in said and "Traceback" not in run.stderr
     assert "worn" not in run.summary["ended"].replace("its wear", "")
     assert abs(run.summary["balances"]["mass"]["unexplained"]) < 1e-12 * run.summary["balances"]["mass"]["initial"]
 

@@ -57,7 +57,7 @@ def test_a_temperature_that_rises_gives_the_integral(tmp_path, values):
     assert run.code == 0, run.stderr
     assert abs(value(run, "k_deviation")) < 5e-3
     start, rise = values.get("temperature", 429.15) - 273.15, values["temperature_rise"]
-    table = {"MET91": [515, 509, 498, 457, 375, 247]}.get(values.get("steel"), [500, 491, 480, 439, 362, 241])
+    table = {"MET91": [515, 509, 498, 457, 375, 247]}.get(values.get("hardness_table"), [500, 491, 480, 439, 362, 241])
     fine = start + rise * (np.arange(200000) + 0.5) / 200000
     integral = np.mean(1 / np.interp(fine, [0, 200, 300, 400, 500, 600], table)) / 9.80665e6
     pressure, k = values.get("force", 885) / values.get("area", 26e-6), values.get("wear_coefficient", 0.0023)

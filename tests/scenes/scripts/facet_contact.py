@@ -56,7 +56,7 @@ motion = VelocityIncrement(masses=np.full(count, mass), inertias=np.ones(count),
                    fixed=np.zeros(count, bool))
 contact = FacetContact(tool=bodies, motion=motion, neighbours=tool.boundary.neighbours())
 wear = FacetWear(contact=contact, boundary=tool.boundary, tool=bodies, law=DissipationArchard(k=K if in_space else 0.0, mu=MU),
-                 hardness=Hardness.constant(HARDNESS)(293.0))
+                 hardness=Hardness.constant(HARDNESS), temperature=lambda: np.full(tool.count, 293.0))
 bodies.add(range(tool.count))
 O.dt = 1e-6 if in_space else 1e-7
 base.register([contact, wear])
