@@ -100,9 +100,9 @@ class ParticleBody(ThermalBody):
         if tool.positions.shape[1] == 2:
             return tool.cells
         # Its particles are ordered by layers, one diameter deep.
-        depth = 2 * float(tool.radii[0])
-        layers = round(tool.breadth / depth)
-        return layered(cells(tool.positions[:tool.count // layers, :2], polygon=tool.vertices), layers, depth)
+        layers = round(tool.breadth / (2 * float(tool.radii[0])))
+        section = cells(tool.positions[:tool.count // layers, :2], polygon=tool.vertices)
+        return layered(section, layers, tool.breadth / layers)
 
     @property
     def alive(self):
@@ -154,7 +154,7 @@ class FacetBody(ThermalBody):
             volumes = depth * np.tile(volumes, layers)
         super().__init__(positions=positions, volumes=volumes, fixed=np.tile(fill.fixed, layers))
         self._alive = np.ones(self.count, bool)
-        shape = self.boundary.vertices, self.boundary.facets
+        shape = tool.first, tool.first_facets
         self._outside_at_first = np.where(outside(positions, *shape), distance(positions, *shape), 0.0)
         self._forget_shape()
         self.follow()

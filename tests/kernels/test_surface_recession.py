@@ -1,9 +1,11 @@
-"""A field that moves inwards with the surface that accelerated wear takes away."""
+"""A field that moves inwards with the surface that accelerated wear removes; points outside of a boundary."""
 import numpy as np
 import pytest
 
+from rockwear.kernels.boundary import prism, segments
 from rockwear.kernels.packing import contacts
-from rockwear.kernels.surface_recession import neighbours, receded
+from rockwear.kernels.polygon import inside
+from rockwear.kernels.surface_recession import neighbours, outside, receded
 
 
 def chain(count):
@@ -86,3 +88,22 @@ def test_the_last_one_takes_its_heat():
     found = receded(temperature=np.array([500.0, 300.0]), capacity=np.array([1.0, 0.0]), adjacent=chain(2), leaving=[0],
                     share=1.0)
     assert np.array_equal(found, [500.0, 300.0])
+
+
+NOTCHED = 1e-2 * np.array([[0, 0], [5, 0], [5, 4], [3, 4], [3, 1], [2, 1], [2, 4], [0, 4]])
+
+
+def test_points_outside_of_a_notched_polygon():
+    points = np.random.default_rng(0).uniform(-0.01, 0.06, (2000, 2))
+    found = outside(points, *segments(NOTCHED))
+    assert np.array_equal(found, ~inside(points, NOTCHED)) and 0.3 < found.mean() < 0.9
+
+
+def test_points_outside_of_a_notched_prism():
+    points = np.random.default_rng(0).uniform([-0.01, -0.01, -0.02], [0.06, 0.05, 0.02], (2000, 3))
+    found = outside(points, *prism(NOTCHED, 0.02, 0.01))
+    assert np.array_equal(found, ~(inside(points[:, :2], NOTCHED) & (abs(points[:, 2]) < 0.01)))
+
+
+def test_no_points_are_outside_of_nothing():
+    assert outside(np.empty((0, 2)), *segments(NOTCHED)).tolist() == []

@@ -26,6 +26,7 @@ from rockwear.kernels.packing import contacts
 from rockwear.kernels.stability import critical_time_step
 from rockwear.model.materials import SANDSTONE, STEEL
 from rockwear.model.rock import Specimen
+from rockwear.model.thermal_body import ParticleBody
 
 KN, KT, MU, ALPHA, D = 20e9, 5e9, 0.5, 1e-5, 2e-3
 E = 2 * math.sqrt(3) * KN * (KN + KT) / (3 * KN + KT)
@@ -38,12 +39,20 @@ def arranged(positions, radii=D / 2, pairs=None, fixed=()):
     """Discs at given places, those that touch bonded."""
     positions = np.asarray(positions, float)
     count, radii = len(positions), np.broadcast_to(radii, len(positions)).astype(float)
-    fixed = np.zeros(count, bool)
-    fixed[list(fixed)] = True
+    held = np.zeros(count, bool)
+    held[list(fixed)] = True
     masses = 2500 * np.pi * radii**2
     pairs = contacts(positions, radii, 1e-9) if pairs is None else np.reshape(pairs, (-1, 2)).astype(int)
-    return SimpleNamespace(positions=positions, radii=radii, count=count, fixed=fixed, masses=masses,
+    return SimpleNamespace(positions=positions, radii=radii, count=count, fixed=held, masses=masses,
                            inertias=0.5 * masses * radii**2, pairs=pairs)
+
+
+def body_of_discs(positions, radius):
+    """Thermal body of so many discs of steel."""
+    count = len(positions)
+    erosion = SimpleNamespace(alive=np.ones(count, bool), areas=np.full(count, 2 * radius))
+    return ParticleBody(SimpleNamespace(positions=positions, radii=np.full(count, radius), volumes=np.zeros(count),
+                                        count=count, fixed=np.zeros(count, bool), erosion=erosion))
 
 
 class Assembly:
@@ -250,10 +259,9 @@ def two_spinning(period, duration=0.02):
     motion = VelocityIncrement(masses=rock.masses, inertias=rock.inertias, radii=rock.radii, fixed=rock.fixed)
     friction = RockFriction(bonds=bonds, motion=motion)
     network = HeatNetwork(capacity=np.full(2, capacity), temperature=300.0, edges=NO_PATHS[0], conductance=0.0)
-    nothing = SimpleNamespace(count=0, radii=np.empty(0), fixed=np.zeros(0, bool))
     untouched = SimpleNamespace(take_heating=lambda: (np.empty(0), np.zeros(2), {}))
-    heat = Heat(network=network, bonds=bonds, rock_friction=friction, tool_contact=untouched, rock=rock, tool=nothing,
-                heat_fraction=chi, tool_share=0.5, contact_conductance=0.0, convection=0.0, ambient=300.0,
+    heat = Heat(network=network, bonds=bonds, rock_friction=friction, tool_contact=untouched, rock=rock,
+                body=body_of_discs(np.empty((0, 2)), radius), heat_fraction=chi, tool_share=0.5, contact_conductance=0.0, convection=0.0, ambient=300.0,
                 rock_paths=NO_PATHS, tool_paths=NO_PATHS, surface_period=1.0, conduction=False)
     expansion = Expansion(coefficient=alpha, rock=rock, reference=300.0, temperature=lambda: network.temperature,
                           bonds=bonds, loose=lambda: friction.contacts)
@@ -300,8 +308,8 @@ def sliding_block():
         body = yade_scene.finite_disc(place, radius, material="steel", mask=yade_scene.TOOL_MASK, mass=0.0, inertia=0.0)
         body.state.blockedDOFs = "xyzXYZ"
         bodies[index] = O.bodies.append(body)
-    tool = SimpleNamespace(count=discs, radii=np.full(discs, radius), fixed=np.zeros(discs, bool), body_of=bodies,
-                           ids=list(bodies.values()), velocity_at=lambda *contact: (0.0, 0.0, 0.0))
+    tool = SimpleNamespace(count=discs, body_of=bodies, ids=list(bodies.values()),
+                           velocity_at=lambda *contact: (0.0, 0.0, 0.0))
     bonds = Bonds(pairs=rock.pairs, law=UNBREAKABLE, clock=lambda: O.time)
     motion = VelocityIncrement(masses=rock.masses, inertias=rock.inertias, radii=rock.radii, fixed=rock.fixed)
     friction = RockFriction(bonds=bonds, motion=motion)
@@ -311,9 +319,9 @@ def sliding_block():
                           conductance=0.0)
     e_rock, e_tool = (effusivity(m.conductivity, m.density, m.specific_heat) for m in (SANDSTONE, STEEL))
     share, chi = effusivity_share(e_tool, e_rock), 0.85
-    heat = Heat(network=network, bonds=bonds, rock_friction=friction, tool_contact=contact, rock=rock, tool=tool,
-                heat_fraction=chi, tool_share=share, contact_conductance=0.0, convection=0.0, ambient=300.0,
-                rock_paths=NO_PATHS, tool_paths=NO_PATHS, surface_period=1.0, conduction=False)
+    heat = Heat(network=network, bonds=bonds, rock_friction=friction, tool_contact=contact, rock=rock,
+                body=body_of_discs(places, radius), heat_fraction=chi, tool_share=share, contact_conductance=0.0,
+                convection=0.0, ambient=300.0, rock_paths=NO_PATHS, tool_paths=NO_PATHS, surface_period=1.0, conduction=False)
     O.dt = 1e-8
     base.register([contact, friction, heat])
     O.engines = (O.engines[:-1] + base.runners({"tool_contact": 1, "rock_friction": 4}) + O.engines[-1:]
