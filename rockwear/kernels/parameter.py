@@ -23,7 +23,7 @@ def above_zero(name, value, unit):
 
 
 def plausible(low, high):
-    """A rule: a number greater than 0 and in [low, high], wide bounds outside of which no material and no process is."""
+    """A rule: a number greater than 0 and in [low, high], bounds so wide that no material or process is outside."""
     def rule(name, value, unit):
         found = above_zero(name, value, unit)
         require(low <= found <= high, name, found, f"between {low:g} and {high:g}", unit)
@@ -184,5 +184,6 @@ def law_parameters(registry, choice):
             if found.setdefault(parameter.name, parameter) != parameter:
                 raise ValueError(f"{parameter.name} of the law {law} differs from that of {laws[parameter.name][0]}")
             laws.setdefault(parameter.name, []).append(law)
-    return tuple(p if len(laws[name]) == len(registry) else replace(p, when={**(p.when or {}), choice: tuple(laws[name])})
-                 for name, p in found.items())
+    return tuple(parameter if len(laws[name]) == len(registry)
+                 else replace(parameter, when={**(parameter.when or {}), choice: tuple(laws[name])})
+                 for name, parameter in found.items())

@@ -59,7 +59,9 @@ def _advice(name, known):
 
 
 def _word(value):
-    return str(value).lower() if isinstance(value, bool) else f"{value:g}" if isinstance(value, float) else str(value)
+    if isinstance(value, float):
+        return f"{value:g}"
+    return str(value).lower() if isinstance(value, bool) else str(value) or "none"
 
 
 def _formatter(prog):
@@ -91,7 +93,7 @@ def _metavar(parameter):
 
 def _description(parameter):
     """Meaning, default with its unit, source, and the condition of use."""
-    default = f"{_word(parameter.default)} {parameter.unit}".strip() or "none"
+    default = f"{_word(parameter.default)} {parameter.unit}".strip()
     used = "; ".join(f"{name} = {' or '.join(map(_word, values))}" for name, values in (parameter.when or {}).items())
     return f"{parameter.meaning} (default {default}; {parameter.source}{f'; only with {used}' if used else ''})"
 

@@ -1,4 +1,4 @@
-"""Bond laws: the two-disc programme of M 4.6 in closed form, and what must hold on any path."""
+"""Bond laws: the two-disc programme of [Rojek 2003, 4.6] in closed form, and what must hold on any path."""
 import math
 
 import numpy as np
@@ -65,7 +65,7 @@ def random_path(seed, components=2, legs=12, steps=300):
     return path[:, 0], path[:, 1:]
 
 
-# The programme of M 4.6
+# The programme of [Rojek 2003, 4.6]
 
 U = np.linspace(0.0, 30e-6, 301) + 1e-9  # off the corners, where the brittle law jumps
 ZERO = np.zeros_like(U)
@@ -202,7 +202,7 @@ def test_damaged_bond_hands_over_its_own_force():
 # Energy
 
 @pytest.mark.parametrize("law", [LAWS["brittle"], LAWS["damage"], LAWS["elasto-plastic"]])
-def test_work_until_gone(law):
+def test_work_until_broken(law):
     for axis, (k, R) in enumerate(((KN, RN), (KT, RT))):
         expected = 0.5 * R * R / k + 0.5 * R * R / law.H
         assert law.fracture_energy()[axis] == pytest.approx(expected, rel=1e-12)
@@ -214,7 +214,7 @@ def test_work_until_gone(law):
 
 @every_law
 @pytest.mark.parametrize("seed", range(25))
-def test_no_path_gives_energy_away_and_no_state_heals(law, seed):
+def test_no_path_creates_energy_and_no_state_heals(law, seed):
     un, ut = random_path(seed)
     forces, stored, states = follow(law, un, ut)
     path = np.column_stack([un, ut])
@@ -230,7 +230,7 @@ def test_no_path_gives_energy_away_and_no_state_heals(law, seed):
 
 @pytest.mark.parametrize("name", ["Padova, softening", "Padova, hardening"])
 def test_padova_shear_cycle_under_changing_compression_costs_energy(name):
-    """(4.13) taken literally would return more than was put in: shear, compress, unload."""
+    """[Rojek 2003, eq. 4.13] taken literally would return more than was put in: shear, compress, unload."""
     corners = np.array([[0, 0], [-1e-6, 2e-6], [-40e-6, 2e-6], [-40e-6, -1e-6], [-1e-6, -1e-6], [-1e-6, 0], [0, 0.0]])
     path = np.vstack([a + (b - a) * np.linspace(0, 1, 400, endpoint=False)[:, None]
                       for a, b in zip(corners, corners[1:])])
@@ -281,15 +281,15 @@ def test_hard_cases_stay_within_the_strength(kind, kn, Rn, Rt, slope, step):
         assert (Fn <= Rn * (1 + 1e-12)).all()
         assert (Fn >= np.minimum(kn * (un - np.maximum.accumulate(un)), 0.0) - 1e-9).all()
         assert (abs(Ft) <= np.maximum(Rt, MU * np.maximum(-Fn, 0.0)) * (1 + 1e-12)).all()
-        gone = states[:, 0] == 1.0
-        broken += gone.any()
-        assert (Fn[gone] <= 0.0).all()
-        assert (abs(Ft[gone]) <= MU * abs(Fn[gone]) * (1 + 1e-9)).all()
+        apart = states[:, 0] == 1.0
+        broken += apart.any()
+        assert (Fn[apart] <= 0.0).all()
+        assert (abs(Ft[apart]) <= MU * abs(Fn[apart]) * (1 + 1e-9)).all()
     assert broken > 0 or slope <= H
 
 
 @hard
-def test_hard_cases_give_no_energy_away(kind, kn, Rn, Rt, slope):
+def test_hard_cases_create_no_energy(kind, kn, Rn, Rt, slope):
     law = kind(kn=kn, kt=KT, Rn=Rn, Rt=Rt, H=slope, mu=MU)
     for seed in range(2):
         un, ut = around_the_peak(law, seed, 3e-3, 3000).T
@@ -401,7 +401,7 @@ def test_shear_force_is_odd(law):
 
 
 @every_law
-def test_turning_the_displacement_turns_the_force(law):
+def test_rotating_the_displacement_rotates_the_force(law):
     turn, _ = np.linalg.qr(np.random.default_rng(1).normal(size=(3, 3)))
     for seed in range(5):
         un, ut = random_path(seed, 3, steps=50)
@@ -423,8 +423,8 @@ def test_one_two_and_three_components_agree(law):
 
 @every_law
 @pytest.mark.parametrize("turn_at", [100, 400, 700])
-def test_turning_state_and_displacement_on_the_way_turns_the_force(law, turn_at):
-    """What the engine does when a contact rotates: the vectors named by the state are turned with ut."""
+def test_rotating_state_and_displacement_on_the_way_rotates_the_force(law, turn_at):
+    """What the engine does when a contact rotates: the vectors named by the state are rotated with ut."""
     for seed in range(5):
         un, ut = random_path(seed, 2, legs=3)
         still, turned = law.initial_state(), law.initial_state()
@@ -440,29 +440,29 @@ def test_turning_state_and_displacement_on_the_way_turns_the_force(law, turn_at)
 
 
 @pytest.mark.parametrize("name", ["brittle", "damage", "damage by tension only"])
-def test_the_tripwire_of_a_virgin_bond_is_its_strength(name):
+def test_the_elastic_domain_of_a_new_bond_is_its_strength(name):
     domain = LAWS[name].elastic_domain(LAWS[name].initial_state())
     assert domain == (KN, KT, RN, RT, 0.0)
 
 
-def test_the_tripwire_of_a_virgin_elastoplastic_bond_has_its_corner_on_the_ellipse():
+def test_the_elastic_domain_of_a_new_elastoplastic_bond_has_its_corner_on_the_ellipse():
     domain = LAWS["elasto-plastic"].elastic_domain(LAWS["elasto-plastic"].initial_state())
     assert domain.Fn == pytest.approx(domain.Ft, rel=1e-12)
     assert (domain.Fn / RN) ** 2 + (domain.Ft / RT) ** 2 == pytest.approx(1.0, rel=1e-12)
 
 
-def test_a_law_that_is_nowhere_linear_has_no_tripwire():
+def test_a_law_that_is_nowhere_linear_has_no_elastic_domain():
     law = NonlinearElastoPlastic()
     assert law.elastic_domain(law.initial_state()) is None
 
 
 @pytest.mark.parametrize("name", ["brittle", "damage", "damage by tension only", "elasto-plastic"])
 @pytest.mark.parametrize("seed", range(10))
-def test_inside_the_tripwire_a_bond_is_linear_wherever_it_has_been(name, seed):
-    """On the way along a random path: forces anywhere within the domain are those of constant springs."""
+def test_inside_its_elastic_domain_a_bond_is_linear_whatever_its_history(name, seed):
+    """At every step of a random path, forces anywhere within the domain are those of constant springs."""
     law, rng = LAWS[name], np.random.default_rng(100 + seed)
     un, ut = random_path(seed, 1, steps=60)
-    bond, wires = law.initial_state(), 0
+    bond, domains = law.initial_state(), 0
     for opening, shift in zip(un.tolist(), ut[:, 0].tolist()):
         Fn, (Ft,) = law.respond(bond, opening, (shift,))
         if bond.broken:
@@ -470,7 +470,7 @@ def test_inside_the_tripwire_a_bond_is_linear_wherever_it_has_been(name, seed):
         domain = law.elastic_domain(bond, Fn, abs(Ft))
         if domain is None:
             continue
-        wires += 1
+        domains += 1
         assert Fn <= domain.Fn and abs(Ft) <= domain.Ft + domain.slope * Fn
         assert domain.kn * (opening - bond.un_plastic) == pytest.approx(Fn, rel=1e-9, abs=TOLERANCE * RN)
         assert domain.kt * (shift - bond.ut_plastic[0]) == pytest.approx(Ft, rel=1e-9, abs=TOLERANCE * RN)
@@ -483,11 +483,12 @@ def test_inside_the_tripwire_a_bond_is_linear_wherever_it_has_been(name, seed):
                 copy = law.initial_state()
                 for field in ("softening", "un_plastic", "ut_plastic"):
                     setattr(copy, field, getattr(bond, field))
-                answer = law.respond(copy, bond.un_plastic + normal / domain.kn, (bond.ut_plastic[0] + shear / domain.kt,))
+                answer = law.respond(copy, bond.un_plastic + normal / domain.kn,
+                                     (bond.ut_plastic[0] + shear / domain.kt,))
                 assert_close(answer[0], normal)
                 assert_close(answer[1][0], shear)
                 assert copy.softening <= bond.softening + 1e-12
-    assert wires > 0
+    assert domains > 0
 
 
 # The Padova law by itself
@@ -530,19 +531,76 @@ def test_padova_shear_softens_down_to_friction():
     assert_close(Ft, np.minimum(kt * ut, np.maximum(line(ut, kt, strength, softening), 0.9 * 1e5)))
 
 
-def test_padova_compression_hardens_and_keeps_its_dent():
+def test_padova_compression_hardens_and_keeps_its_plastic_displacement():
     law = NonlinearElastoPlastic(Rc=1e5, compression=Parabolic(b2=5e9))
     u = np.array([-5e-6, -10e-6, -8e-6, 100e-6, -4e-6, -8e-6])
     Fn, _ = law.drive(u, 0 * u)
     assert_close(Fn, [-1e5, -1.2e5, -8e4, 0.0, 0.0, -8e4])
 
 
-def test_padova_snaps_where_softening_is_steeper_than_the_spring():
+def test_padova_breaks_at_once_where_softening_is_steeper_than_the_spring():
     law = NonlinearElastoPlastic(tension=Parabolic(b2=-3e10))
     assert_close(law.drive(U, ZERO)[0], np.where(KN * U <= RN, KN * U, 0.0))
 
 
+# Stiffness
+
+@every_law
+def test_no_elastic_step_is_stiffer_than_the_bound(law):
+    kn, kt = law.stiffest()
+    assert kn >= law.kn and kt >= law.kt
+    for seed in range(10):
+        un, ut = random_path(seed)
+        forces, _, states = follow(law, un, ut)
+        elastic = (np.diff(states, axis=0) == 0.0).all(axis=1)
+        change = np.diff(forces[:, 0])[elastic]
+        assert (abs(change) <= kn * abs(np.diff(un)[elastic]) + 1e-9 * RN).all()
+
+
+@pytest.mark.parametrize("r", [-1e5, 0.0, 3e4, 1e9])
+def test_padova_is_stiffest_at_its_largest_compression_or_at_none(r):
+    law = NonlinearElastoPlastic(r=r, eta=10.0)
+    kn, kt = law.stiffest()
+    assert kn == law.kn
+    slopes = []
+    for compression in (0.0, *np.geomspace(1e3, 100 * law.Rn, 30)):
+        bond = law.initial_state()
+        law.respond(bond, -compression / law.kn, (0.0,))
+        _, (force,) = law.respond(bond, -compression / law.kn, (1e-9,))
+        slopes.append(force / 1e-9)
+    assert max(slopes) == pytest.approx(kt, rel=1e-9)
+    assert law.scaled(3.0).stiffest() == pytest.approx((kn, kt), rel=1e-12)
+
+
+def test_a_compressive_strength_above_the_bound_raises_it():
+    high, low = NonlinearElastoPlastic(Rc=1e9).stiffest()[1], NonlinearElastoPlastic(Rc=1e5).stiffest()[1]
+    assert low == NonlinearElastoPlastic().stiffest()[1]
+    assert high == pytest.approx(2e8 * (1e9 + 1e5)**(1 / 3), rel=1e-12)
+
+
 # Parameters
+
+def test_the_padova_parameters_stand_for_the_law_of_its_defaults():
+    values = {parameter.name: parameter.default for parameter in NonlinearElastoPlastic.parameters}
+    law, un = NonlinearElastoPlastic.from_values(values), random_path(1, 1)
+    for got, expected in zip(law.drive(un[0], un[1][:, 0]), NonlinearElastoPlastic(mu=MU).drive(un[0], un[1][:, 0])):
+        np.testing.assert_array_equal(got, expected)
+
+
+@pytest.mark.parametrize("values, direct", [
+    (dict(padova_m=3e8), dict(m=3e8)), (dict(padova_r=1e4), dict(r=1e4)), (dict(padova_eta=0.5), dict(eta=0.5)),
+    (dict(padova_cohesion=2e5), dict(c=2e5)), (dict(padova_tension_b2=-1e9), dict(tension=Parabolic(b2=-1e9))),
+    (dict(padova_shear_b2=-1e9), dict(shear=Parabolic(b2=-1e9))), (dict(kn=1e10, Rn=2e5, mu=0.2),) * 2])
+def test_each_padova_parameter_reaches_the_law(values, direct):
+    defaults = {parameter.name: parameter.default for parameter in NonlinearElastoPlastic.parameters}
+    law = NonlinearElastoPlastic.from_values({**defaults, **values})
+    un = 1e-6 * np.array([1, 3, 5, 6, 7, -9, -9, -9, -9, -9.0])
+    ut = 1e-6 * np.array([1, 2, 3, 4, 4, 4, 20, 30, 40, 90.0])
+    found = law.drive(un, ut)
+    for got, expected in zip(found, NonlinearElastoPlastic(**{"mu": MU, **direct}).drive(un, ut)):
+        np.testing.assert_array_equal(got, expected)
+    assert any((got != plain).any() for got, plain in zip(found, NonlinearElastoPlastic(mu=MU).drive(un, ut)))
+
 
 @pytest.mark.parametrize("kind, good", [(ElasticBrittle, BRITTLE), (ElasticDamage, SOFT),
                                         (ElastoPlasticSoftening, SOFT)])

@@ -4,8 +4,9 @@ import pytest
 
 from rockwear.kernels.archard import wear_rate
 from rockwear.kernels.checks import ParameterError
+from rockwear.kernels.wear_fitting import LaboratoryTest
 from rockwear.kernels.wear_laws import (
-    FRICTION, NORMAL, DissipationArchard, LaboratoryTest, PowerLaw, PressureArchard, SumOfModes, wear_law)
+    FRICTION, NORMAL, WEAR_LAWS, DissipationArchard, PowerLaw, PressureArchard, SumOfModes)
 
 MU, K, H = 0.3, 0.0113, 5e9
 AREA = np.array([0.8e-3, 1.0e-3, 0.9e-3])
@@ -46,7 +47,7 @@ def test_the_dissipation_form_is_archards_volume_of_the_work():
 
 @pytest.mark.parametrize("n", [0.5, 1.0, 1.7, 2.0])
 def test_power_law_by_its_reference_stress(n):
-    """M 6.5 as it is printed, dw = v dt (p_T / (tau H))^n over the area."""
+    """[Rojek 2003, 6.5] as it is printed, dw = v dt (p_T / (tau H))^n over the area."""
     law = PowerLaw(k=K, mu=MU, exponent=n)
     exact = AREA * SLIP * (MU * PUSH / AREA / (law.reference * H))**n
     assert law.volume(slid(law), H, AREA) == pytest.approx(exact, rel=1e-12)
@@ -56,7 +57,7 @@ def test_power_law_by_its_reference_stress(n):
 
 
 def test_modes_add_up_and_share_the_friction():
-    """M 6.4: two linear modes of 30 and 70 % of the dissipation are one of the mean k; a power mode feels its share."""
+    """[Rojek 2003, 6.4]: two linear modes of 30 and 70 % of the dissipation are one of the mean k."""
     modes = SumOfModes([DissipationArchard(k=0.02, mu=MU, share=0.3), DissipationArchard(k=0.005, mu=MU, share=0.7)])
     one = DissipationArchard(k=0.3 * 0.02 + 0.7 * 0.005, mu=MU)
     assert modes.needs == one.needs
@@ -66,17 +67,28 @@ def test_modes_add_up_and_share_the_friction():
     assert square.volume(slid(square), H, AREA) == pytest.approx(exact, rel=1e-12)
 
 
-@pytest.mark.parametrize("name, own", [("dissipation", {}), ("pressure", {}), ("power", {"exponent": 1.5}),
-                                       ("modes", {"modes": "0.01/1/0.6, 3/2/0.4"})])
-def test_acceleration_multiplies_every_form(name, own):
-    law = wear_law(name, k=K, mu=MU, **own)
+VALUES = {"wear_coefficient": K, "wear_exponent": 1.5, "wear_modes": "0.01/1/0.6, 3/2/0.4"}
+
+
+def law_of(name, mu=MU, **values):
+    """The law of this name with VALUES of its parameters, or others."""
+    return WEAR_LAWS[name].from_values({**VALUES, **values}, mu)
+
+
+@pytest.mark.parametrize("name", WEAR_LAWS)
+def test_acceleration_multiplies_every_form(name):
+    law = law_of(name)
     volume = law.volume(slid(law), H, AREA)
     assert law.scaled(7000).volume(slid(law), H, AREA) == pytest.approx(7000 * volume, rel=1e-12)
     assert law.wears and not law.scaled(0).wears
-    for other in ({"exponent": 2.0}, {"modes": "0.01/1/1"}):
-        if set(other) != set(own):
-            with pytest.raises(ParameterError, match="wear_exponent|wear_modes"):
-                wear_law(name, k=K, mu=MU, **{**own, **other})
+    if "wear_coefficient" in {parameter.name for parameter in law.parameters}:
+        assert law.k == K
+
+
+def test_values_reach_the_laws():
+    power, modes = law_of("power"), law_of("modes").modes
+    assert (power.exponent, power.mu, law_of("dissipation").mu) == (1.5, MU, MU)
+    assert [(mode.k, mode.exponent, mode.share, mode.mu) for mode in modes] == [(0.01, 1, 0.6, MU), (3, 2, 0.4, MU)]
 
 
 def test_the_linear_laws_are_the_rate_of_archard():
@@ -128,12 +140,10 @@ def test_uncertainty_of_one_row_is_its_error_and_of_many_their_scatter():
 
 
 @pytest.mark.parametrize("call, name", [
-    (lambda: wear_law("magic", k=1, mu=1), "wear_law"), (lambda: wear_law("pressure", k=-1, mu=1), "k"),
-    (lambda: wear_law("power", k=1, mu=0, exponent=1), "mu"),
-    (lambda: wear_law("power", k=1, mu=1, exponent=0), "exponent"),
-    (lambda: wear_law("modes", k=1, mu=1, modes=""), "wear_modes"),
-    (lambda: wear_law("modes", k=1, mu=1, modes="1/1/0.5"), "modes"),
-    (lambda: wear_law("modes", k=1, mu=1, modes="1/1/x"), "wear_modes"),
+    (lambda: law_of("pressure", wear_coefficient=-1), "k"), (lambda: law_of("power", mu=0), "mu"),
+    (lambda: law_of("power", wear_exponent=0), "exponent"), (lambda: law_of("power", wear_exponent=21), "exponent"),
+    (lambda: law_of("modes", wear_modes=""), "wear_modes"), (lambda: law_of("modes", wear_modes="1/1/0.5"), "modes"),
+    (lambda: law_of("modes", wear_modes="1/1/x"), "wear_modes"), (lambda: SumOfModes([]), "modes"),
     (lambda: laboratory(PressureArchard(k=0)).__post_init__(), "depth"),
     (lambda: PowerLaw(k=1, mu=1, exponent=1).fit_exponent(laboratory(PressureArchard(k=K), [1e6, 2e6], [1, 1])),
      "tests"),

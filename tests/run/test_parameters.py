@@ -17,7 +17,7 @@ HEAT = Group("heat", (
     Parameter("convection", 30.0, "W/m2K", number(0), "5 % of nothing", "[Rojek 2003, 7.5]", when={"shank": ("free",)}),
     Parameter("shank", "free", "", choice("free", "fixed"), "of the tool")), when={"heat": (True,)})
 OTHERS = Group("others", (
-    Parameter("tool_kn", 9e10, "N/m", stiffness, "of the tool"), Parameter("rock_density", 2500.0, "kg/m3", density, ""),
+    Parameter("tool_kn", 9e10, "N/m", stiffness, "tool"), Parameter("rock_density", 2500.0, "kg/m3", density, "-"),
     Parameter("velocity", 4.0, "m/s", speed, "of the tool"), Parameter("start_up", 0.1, "s", duration, "at first"),
     Parameter("rake", 0.0, "deg", number(-80, 80), "rake angle"), Parameter("seed", 1, "", integer(0), "of packings"),
     Parameter("velocities", "4,1", "m/s", numbers(above_zero), "of passes"), Parameter("out", "", "", text, "folder"),
