@@ -25,7 +25,8 @@ import numpy as np
 from calibration import generated
 from rockwear.kernels.archard import BRINELL, KELVIN, MET71, MET91
 from rockwear.kernels.checks import ParameterError, finite, positive, require
-from rockwear.kernels.wear_laws import LAWS, LaboratoryTest, PowerLaw, SumOfModes, wear_law
+from rockwear.kernels.wear_fitting import LaboratoryTest
+from rockwear.kernels.wear_laws import WEAR_LAWS, PowerLaw, SumOfModes
 from rockwear.report import plots
 
 EXAMPLE = Path(__file__).with_name("wear_tests.csv")
@@ -130,11 +131,14 @@ def fit(rows, *, law="pressure", mu=0.3, exponent=1.0, modes="", brinell=BRINELL
 
     exponent: of the power law; None fits it too. Each row is also fitted alone unless the law has several modes.
     """
+    require(law == "power" or exponent == 1, "exponent", exponent, f"left out with the law {law}")
+    require(law == "modes" or not modes, "modes", modes, f"left out with the law {law}")
+    values = {"wear_coefficient": 1.0, "wear_exponent": exponent or 1.0, "wear_modes": modes}
     found = {}
     for steel in dict.fromkeys(row.get("steel", "") for row in rows):
         own = [row for row in rows if row.get("steel", "") == steel]
         tests = tests_of(own, mu=mu, brinell=brinell)
-        start = wear_law(law, k=1.0, mu=mu, exponent=exponent or 1.0, modes=modes)
+        start = WEAR_LAWS[law].from_values(values, mu)
         if law == "power" and exponent is None:
             fitted, result, n = start.fit_exponent(tests)
         else:
@@ -204,7 +208,7 @@ def main(words=None):
     parser = argparse.ArgumentParser(prog="python3 -m calibration.fitting.wear_fit", description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("file", nargs="?", default=str(EXAMPLE), help="CSV file; default: the four tests of [Rojek 2003, 6.6]")
-    parser.add_argument("--wear_law", default="pressure", choices=LAWS)
+    parser.add_argument("--wear_law", default="pressure", choices=sorted(WEAR_LAWS))
     parser.add_argument("--mu", default="0.3", help="friction coefficient, where friction is not measured")
     parser.add_argument("--exponent", default="1", help="n of the power law, or fit")
     parser.add_argument("--modes", default="", help="of several modes: k/exponent/share, ... (k is fitted)")
