@@ -1,0 +1,66 @@
+"""The heat engine over thermal bodies: exact heat, exact exchange, closed balances, recession and restart."""
+import pytest
+
+from tests.running import checks_of
+
+SPACES = ["plane", "space"]
+
+
+@pytest.fixture(scope="module")
+def found(tmp_path_factory):
+    return checks_of("heat", tmp_path_factory.mktemp("heat"))
+
+
+@pytest.mark.parametrize("space", SPACES)
+def test_heat_of_rubbed_facets_arrives_in_the_body(found, space):
+    got = found[space]["friction"]
+    assert got["warm"] == got["nodes"] and len(got["warm"]) == 2
+    assert got["spread"] > got["count"] / 2
+    assert got["tool"] == pytest.approx(got["tool_exact"], rel=1e-12)
+    assert got["rock"] == pytest.approx(got["rock_exact"], rel=1e-11)
+    # A facet has the temperature of its node, the hottest one.
+    assert got["hottest"] == pytest.approx(300.0, abs=1e-9)
+    assert got["missing"] < 1e-14
+
+
+@pytest.mark.parametrize("space", SPACES)
+@pytest.mark.parametrize("contact", ["perfect", "moderate"])
+def test_facets_of_one_node_exchange_heat_as_one_contact(found, space, contact):
+    got = found[space]["exchange"][contact]
+    assert got["gap"] == pytest.approx(got["exact"], rel=1e-12, abs=1e-9)
+    assert got["mixture"] == pytest.approx(got["whole"], rel=1e-14)
+    assert got["touch"] == pytest.approx(got["touch_exact"], rel=1e-12) and got["rock_mean"] == pytest.approx(300.0)
+
+
+@pytest.mark.parametrize("space", SPACES)
+@pytest.mark.parametrize("acceleration", ["1.0", "10000.0"])
+def test_a_receding_surface_takes_nodes_and_the_balance_closes(found, space, acceleration):
+    got = found[space]["worn"][acceleration]
+    assert got["dead"] >= 20 and got["gone"] and got["facets_alive"]
+    assert got["missing"] < 1e-14 and got["shank"] == 0.0
+    assert got["made"] > 100 and got["to_air"] > 0
+
+
+@pytest.mark.parametrize("space", SPACES)
+def test_accelerated_wear_leaves_its_heat_behind(found, space):
+    slow, fast = (found[space]["worn"][acceleration] for acceleration in ("1.0", "10000.0"))
+    assert slow["dead"] == fast["dead"] and slow["taken"] > 20
+    assert abs(fast["taken"]) < 0.05 * slow["taken"] and fast["hottest"] > slow["hottest"]
+
+
+@pytest.mark.parametrize("space", SPACES)
+def test_a_restored_engine_goes_on_bit_for_bit(found, space):
+    got = found[space]["restart"]
+    assert got["same_at_once"] and got["same"] and got["dead"] >= 20
+
+
+def test_a_whole_tool_replaces_a_worn_one(found):
+    got = found["renewed"]
+    assert got["dead"] > 20 and got["alive"] == got["count"] and got["missing"] < 1e-14
+
+
+def test_spheres_in_space_close_their_balance(found):
+    got = found["particles"]
+    assert got["gone"] == 10 and got["hottest"] and got["shank"] == 0.0 and got["missing"] < 1e-14
+    entries = got["entries"]
+    assert entries["generated"] > 0 > max(entries["convected"], entries["removed"]) and entries["into_fixed"] != 0

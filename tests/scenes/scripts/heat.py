@@ -1,0 +1,264 @@
+"""The heat engine over thermal bodies, its contacts and rock given by hand; writes {check: {name: value}} as JSON.
+
+    yade -n -x heat.py FILE
+"""
+import json
+import os
+import sys
+from types import SimpleNamespace
+
+import numpy as np
+from yade import O
+
+from rockwear.engines.heat import Heat
+from rockwear.kernels.boundary import area_vectors, prism
+from rockwear.kernels.conduction import HeatNetwork
+from rockwear.kernels.polygon import tooth
+from rockwear.kernels.voronoi import cells
+from rockwear.model.facet_tool import FacetTool
+from rockwear.model.materials import STEEL
+from rockwear.model.particle_tool import LayeredTool
+from rockwear.model.thermal_body import FacetBody, ParticleBody
+
+LENGTH, HEIGHT, BREADTH = 0.016, 0.008, 0.006
+BLOCK = np.array([[0, 0], [LENGTH, 0], [LENGTH, HEIGHT], [0, HEIGHT]])
+FIRST = 300.0
+STEP = 1e-3
+C_ROCK = 5.0
+
+
+def fill():
+    """Squares of 1 mm that fill BLOCK."""
+    x, y = np.meshgrid(np.arange(16) + 0.5, np.arange(8) + 0.5)
+    places = 1e-3 * np.column_stack([x.ravel(), y.ravel()])
+    return SimpleNamespace(positions=places, radii=np.full(128, 0.5e-3), volumes=np.full(128, 1e-6),
+                           fixed=places[:, 1] > HEIGHT - 1e-3, cells=cells(places, polygon=BLOCK))
+
+
+def in_plane():
+    """(tool, body) of facets in the plane, and in space."""
+    tool = FacetTool.of_outline(BLOCK, segment=0.5e-3, density=STEEL.density)
+    return tool, FlatBody(tool, fill=fill())
+
+
+def in_space():
+    vertices, facets = prism(BLOCK, BREADTH, 3e-3)
+    tool = FacetTool(vertices=vertices, facets=facets, density=STEEL.density)
+    return tool, FacetBody(tool, fill=fill(), breadth=BREADTH)
+
+
+class FlatBody(FacetBody):
+    """Its fill is no Tool: it conducts through its cells."""
+
+    def paths(self, model, conductivity):
+        return self.cells.edges, self.cells.conductance(conductivity)
+
+
+class Engines:
+    """What the heat engine asks of contacts and rock; `put` sets the next visit's friction and contacts."""
+
+    def __init__(self, pieces, dimension):
+        self.pieces, self.dimension = pieces, dimension
+        self.pairs, self.contacts = np.empty((0, 2), int), []
+        self.count, self.radii, self.fixed = 2, np.full(2, 2e-3), np.zeros(2, bool)
+        self.put({}, {})
+
+    def put(self, work, touching):
+        self.work, self.touching = work, touching
+
+    def take_heating(self):
+        work = np.zeros(self.pieces)
+        for piece, joules in self.work.items():
+            work[piece] = joules
+        taken = work, np.array([work.sum(), 0.0]), dict(self.touching)
+        self.put({}, {})
+        return taken
+
+    def take_work(self):
+        return np.zeros(2)
+
+    def find_contacts(self):
+        pass
+
+    def in_contact(self):
+        return np.zeros(0, bool)
+
+    def current_positions(self):
+        return np.array([[1.0, 1.0, 0.0], [2.0, 1.0, 0.0]])[:, :self.dimension]
+
+
+def engine(body, engines, **changes):
+    capacity = np.concatenate([np.full(2, C_ROCK), body.capacities(STEEL, "voronoi")])
+    network = HeatNetwork(capacity=capacity, temperature=FIRST, edges=np.empty((0, 2), int), conductance=0.0)
+    values = dict(heat_fraction=0.85, tool_share=0.75, contact_conductance=0.0, convection=0.0, ambient=280.0,
+                  surface_period=2 * STEP, rock_paths=(np.empty((0, 2), int), np.empty(0)),
+                  tool_paths=body.paths("voronoi", STEEL.conductivity))
+    made = Heat(network=network, bonds=engines, rock_friction=engines, tool_contact=engines, rock=engines, body=body,
+                **{**values, **changes})
+    made.begin()
+    return made
+
+
+def visit(heat, work=(), touching=()):
+    """One visit after STEP seconds."""
+    heat.tool_contact.put(dict(work), dict(touching))
+    O.dt, heat.last_iteration = STEP, O.iter - 1
+    heat.act()
+
+
+def lowest(tool):
+    """Facets at the bottom of the block."""
+    areas = area_vectors(tool.boundary.vertices, tool.boundary.facets)
+    return areas[:, 1] < -0.9 * np.linalg.norm(areas, axis=1)
+
+
+def recede(tool, depth):
+    areas = np.linalg.norm(area_vectors(tool.boundary.vertices, tool.boundary.facets), axis=1)
+    tool.boundary.wear(np.where(lowest(tool), areas * depth, 0.0))
+
+
+def missing(heat):
+    """What the balance misses over the heat that there was at first."""
+    return abs(heat.balance()["residual"]) / heat.initial_content
+
+
+def friction(make):
+    """All friction heat arrives: at first in the nodes of the rubbed facets, later in all of the body."""
+    tool, body = make()
+    heat = engine(body, Engines(tool.count, body.positions.shape[1]))
+    rubbed = np.flatnonzero(lowest(tool))[:2].tolist()
+    O.dt, heat.last_iteration = STEP, O.iter
+    heat.tool_contact.put({facet: 4.0 for facet in rubbed}, {})
+    heat.act()
+    rise = heat.tool_temperature() - FIRST
+    warm = np.flatnonzero(rise).tolist()
+    for _ in range(20):
+        visit(heat, {facet: 1.0 for facet in rubbed})
+    later = heat.tool_temperature() - FIRST
+    capacity = heat.network.capacity
+    return {"warm": warm, "nodes": sorted(set(body.node_of[rubbed].tolist())), "spread": int((later > 0).sum()),
+            "count": body.count, "tool": float(capacity[2:] @ later), "tool_exact": 0.85 * 0.75 * (8 + 40),
+            "rock": float(capacity[:2] @ (heat.network.temperature[:2] - FIRST)), "rock_exact": 0.85 * 0.25 * (8 + 40),
+            "hottest": float(heat.temperature_of_pieces()[rubbed].max() - later.max()), "missing": missing(heat)}
+
+
+def exchange(make):
+    """Facets of one node and a rock particle in perfect contact reach one temperature; moderate contact is exact."""
+    tool, body = make()
+    found = {}
+    node = int(body.node_of[np.flatnonzero(lowest(tool))[3]])
+    facets = np.flatnonzero(body.node_of == node).tolist()
+    for name, conductance in (("perfect", 1e12), ("moderate", 2e5)):
+        heat = engine(body, Engines(tool.count, body.positions.shape[1]), contact_conductance=conductance,
+                      tool_paths=(np.empty((0, 2), int), np.empty(0)))
+        state = heat.network.state()
+        state["temperature"][2 + node] = 700.0
+        heat.network.restore(state)
+        heat.initial_content = heat.network.heat_content
+        visit(heat, touching={(facet, 1): STEP for facet in facets})
+        rock, steel = heat.network.temperature[[1, 2 + node]]
+        capacity = heat.network.capacity[2 + node]
+        width = np.minimum(body.contact_areas[facets], (2 * 2e-3)**(body.positions.shape[1] - 1)).sum()
+        decay = np.exp(-conductance * width * STEP * (1 / C_ROCK + 1 / capacity))
+        found[name] = {"gap": float(steel - rock), "exact": float(400.0 * decay), "mixture": float(C_ROCK * rock + capacity * steel),
+                       "whole": float(C_ROCK * 300.0 + capacity * 700.0)}
+        power, touch, warmth = heat.averages()
+        found[name].update(touch=float(touch.sum()), touch_exact=float(conductance * width), rock_mean=float(warmth[node]))
+    return found
+
+
+def worn(make, acceleration):
+    """A hot bottom recedes by two rows of nodes: what leaves, what stays, and that the balance closes."""
+    tool, body = make()
+    heat = engine(body, Engines(tool.count, body.positions.shape[1]), contact_conductance=3e4, convection=50.0,
+                  wear_acceleration=acceleration, shank_temperature=FIRST)
+    rubbed = np.flatnonzero(lowest(tool)).tolist()
+    removed_capacity = 0.0
+    for n in range(24):
+        if n % 4 == 3:
+            before = heat.network.capacity.sum()
+            recede(tool, 0.35e-3)
+        visit(heat, {facet: 0.3 for facet in rubbed}, {(facet, n % 2): STEP for facet in rubbed[:4]})
+        if n % 4 == 3:
+            removed_capacity += float(before - heat.network.capacity.sum())
+    alive = body.alive
+    return {"dead": int((~alive).sum()), "gone": bool(np.array_equal(heat.network.capacity[2:] > 0, alive)),
+            "missing": missing(heat), "hottest": float(heat.tool_temperature()[alive].max()),
+            "shank": np.ptp(heat.tool_temperature()[body.fixed & alive]).item(),
+            "taken": -heat.balance()["removed"] - FIRST * removed_capacity,
+            "made": heat.balance()["generated"], "to_air": -heat.balance()["convected"],
+            "facets_alive": bool(alive[body.node_of].all())}
+
+
+def restart(make):
+    """A body restored in mid-recession goes on as the one that was never stopped."""
+    def loads(n, tool):
+        rubbed = np.flatnonzero(lowest(tool)).tolist()
+        return {facet: 0.3 for facet in rubbed}, {(facet, n % 2): STEP for facet in rubbed[:4]}
+
+    settings = dict(contact_conductance=3e4, convection=50.0, wear_acceleration=100.0, shank_temperature=290.0)
+    tool, body = make()
+    heat = engine(body, Engines(tool.count, body.positions.shape[1]), **settings)
+    for n in range(8):
+        visit(heat, *loads(n, tool))
+        recede(tool, 0.2e-3)  # after the visit: the state is saved with the shape not followed yet
+    saved = heat.state(), tool.boundary.state()
+    other, other_body = make()
+    again = engine(other_body, Engines(other.count, body.positions.shape[1]), **settings)
+    other.boundary.restore(saved[1])
+    again.restore(saved[0])
+    same = np.array_equal(heat.temperature_of_pieces(), again.temperature_of_pieces())
+    for n in range(8, 16):
+        for one, shape in ((heat, tool), (again, other)):
+            visit(one, *loads(n, shape))
+            recede(shape, 0.1e-3)
+    return {"same_at_once": bool(same), "dead": int((~body.alive).sum()),
+            "same": bool(np.array_equal(heat.network.temperature, again.network.temperature)
+                         and heat.balance() == again.balance() and np.array_equal(body.alive, other_body.alive))}
+
+
+def renewed():
+    """A whole tool in place of a worn one."""
+    tool, body = in_plane()
+    new = tool.boundary.state()
+    heat = engine(body, Engines(tool.count, 2), wear_acceleration=10.0)
+    for _ in range(3):
+        recede(tool, 0.7e-3)
+        visit(heat, {int(np.flatnonzero(lowest(tool))[0]): 3.0})
+    dead = int((~body.alive).sum())
+    tool.boundary.restore(new)
+    heat.renew_tool(np.full(body.count, 320.0))
+    visit(heat, {int(np.flatnonzero(lowest(tool))[0]): 3.0})
+    return {"dead": dead, "alive": int(body.alive.sum()), "count": body.count, "missing": missing(heat)}
+
+
+def particles():
+    """A tool of spheres: friction, exchange, convection, wear, loose pieces and a fixed shank in one balance."""
+    outline = tooth(height=0.02, width=0.012, rake=0.2, clearance=0.1, tip_radius=2e-3)
+    tool = LayeredTool(vertices=outline, radius=0.7e-3, breadth=0.006, seed=1, removal="volume", density=STEEL.density)
+    body = ParticleBody(tool)
+    heat = engine(body, Engines(tool.count, 3), contact_conductance=2e4, convection=100.0, wear_acceleration=1000.0,
+                  shank_temperature=310.0)
+    tip = np.argsort(tool.positions[:, 1])[:12].tolist()
+    for n in range(30):
+        alive = [i for i in tip if tool.erosion.alive[i]]
+        if n % 6 == 5:
+            tool.erosion.alive[alive[:2]] = False
+            heat.tool_contact.put({alive[0]: 0.1}, {(alive[0], 0): STEP})
+            heat.remove(alive[:1], alive[1:2])
+        else:
+            visit(heat, {i: 0.2 for i in alive}, {(i, n % 2): STEP for i in alive[:5]})
+    balance, temperature = heat.balance(), heat.temperature_of_pieces()
+    return {"missing": missing(heat), "hottest": int(np.argmax(temperature)) in tip, "entries": balance,
+            "shank": float(np.ptp(temperature[tool.fixed])), "count": tool.count,
+            "gone": int((~tool.erosion.alive).sum())}
+
+
+MAKERS = {"plane": in_plane, "space": in_space}
+found = {"renewed": renewed(), "particles": particles()}
+for name, maker in MAKERS.items():
+    found[name] = {"friction": friction(maker), "exchange": exchange(maker), "restart": restart(maker),
+                   "worn": {str(a): worn(maker, a) for a in (1.0, 1e4)}}
+with open(sys.argv[-1], "w", encoding="utf-8") as file:
+    json.dump(found, file)
+os._exit(0)
