@@ -38,6 +38,14 @@ def test_too_many_steps_name_what_makes_them(words, named, tmp_path):
     assert os.listdir(tmp_path) == []
 
 
+def test_a_row_of_a_table_may_leave_a_column_out(tmp_path):
+    table = tmp_path / "table.txt"
+    table.write_text("k density\n1e29 -\n- 1e-30\n", encoding="utf-8")
+    for line, cause in ((2, "k = 1e+29 N/m"), (3, "density = 1e-30 kg/m3")):
+        environment = {**os.environ, "PYTHONPATH": str(ROOT), "YADE_BATCH": f"{table}:{line}"}
+        assert error_of(run_script(SCRIPTS / "steps.py", cwd=tmp_path, env=environment)).endswith(f"change {cause}")
+
+
 def test_a_checkpoint_of_another_version_is_refused(tmp_path):
     checkpoint.save(tmp_path / "out/checkpoint", identity={"rockwear version": "0.1.0"}, state={},
                     write_scenes=lambda directory: None)

@@ -31,7 +31,6 @@ from importlib import import_module
 from pkgutil import iter_modules
 
 from rockwear.kernels.checks import require
-from rockwear.kernels.wear_fitting import LaboratoryTest  # noqa: F401
 from rockwear.kernels.wear_laws.base import FRICTION, NORMAL, WEAR_LAWS, WORK, WearLaw
 from rockwear.kernels.wear_laws.dissipation import DissipationArchard
 from rockwear.kernels.wear_laws.modes import SumOfModes
