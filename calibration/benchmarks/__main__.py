@@ -2,12 +2,12 @@
 
     python3 -m calibration.benchmarks DIR        (make bench)
 
-Parameters of yade_scripts/tooth_cycles.py, each against its finest setting on otherwise the same run, two runs at a time;
-the cost of all Python engines together comes from calibration/benchmarks/overhead.py. Sampling and heat do not act back on
-the motion while no particle is removed (wear_acceleration 100 here), so their runs follow one trajectory and differ by the
-parameter alone. Another time step changes which bond breaks first, and so the whole trajectory: its error is measured on
-rock that cannot break, beside the scatter of the breaking rock over seeds. Writes bench.md (tables), bench.json, figures
-and provenance.json into DIR.
+Parameters of yade_scripts/tooth_cycles.py, each against its finest setting on otherwise the same run, two runs at a
+time; the cost of all Python engines together comes from calibration/benchmarks/overhead.py. Sampling and heat do not
+act back on the motion while no particle is removed (wear_acceleration 100 here), so their runs follow one trajectory
+and differ by the parameter alone. Another time step changes which bond breaks first, and so the whole trajectory: its
+error is measured on rock that cannot break, beside the scatter of the breaking rock over seeds. Writes bench.md
+(tables), bench.json, figures and provenance.json into DIR.
 """
 import json
 import sys
@@ -15,15 +15,13 @@ from pathlib import Path
 from statistics import mean, stdev
 
 import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 import numpy as np
 
 from calibration import generated
 from calibration.benchmarks import heat as heat_study
 from calibration.benchmarks import loading_speed
 from calibration.campaigns.runs import RunFailed, Runs, run_script
+from rockwear.report import plots
 
 SAME_PATH = {"wear_acceleration": 100, "start_up": 0.002, "cycles": 0, "snapshot_period": 1}
 UNBREAKABLE = {**SAME_PATH, "start_up": 2e-4, "Rn": 1e12, "Rt": 1e12, "approach": 1e-4}
@@ -71,7 +69,8 @@ def rows_against_finest(runs, parameter):
     for summary in runs.values():
         depth, exact = summary["worn_depth"], reference["worn_depth"]
         rows.append({
-            parameter: summary["parameters"][parameter], "cost": cost(summary), "loop_seconds": summary["wall_time"]["loop"],
+            parameter: summary["parameters"][parameter], "cost": cost(summary),
+            "loop_seconds": summary["wall_time"]["loop"],
             "wear": abs(value(summary, "worn_volume") / value(reference, "worn_volume") - 1),
             "distribution": float(np.abs(depth - exact).sum() / exact.sum()),
             "tip temperature": abs(warming(summary) / warming(reference) - 1) if warming(reference) > 0 else 0.0,
@@ -123,13 +122,14 @@ def tables(result):
               f"{len(overhead['seconds_a_step']['dead'])} times, medians).", "",
               f"Breaking rock over packings {', '.join(map(str, SEEDS))}, 4 ms:", "", *generated.table(
                   ["variant", "mean cutting force, kN/m", "scatter, kN/m", "wall time, s", "largest energy residual"],
-                  [[name, f"{1e-3 * v['mean_cutting_force']:.0f}", f"{1e-3 * v['scatter']:.0f}", f"{v['loop_seconds']:.0f}",
-                    f"{100 * v['energy_residual']:.1f} %"] for name, v in result["seeds"].items()])]
+                  [[name, f"{1e-3 * v['mean_cutting_force']:.0f}", f"{1e-3 * v['scatter']:.0f}",
+                    f"{v['loop_seconds']:.0f}", f"{100 * v['energy_residual']:.1f} %"]
+                   for name, v in result["seeds"].items()])]
     return lines
 
 
 def measure(script, folder):
-    """Run a measurement that is a YADE script of calibration/benchmarks. -> the JSON file that it writes into `folder`."""
+    """Run a YADE script of calibration/benchmarks. -> the JSON file that it writes into `folder`."""
     run_script(f"calibration/benchmarks/{script}.py", folder)
     return json.loads((folder / f"{script}.json").read_text(encoding="utf-8"))
 
@@ -137,10 +137,11 @@ def measure(script, folder):
 def law_costs(folder):
     """Lines on the cost of softening bonds, from calibration/benchmarks/law_cost.py."""
     found = measure("law_cost", folder / "law_cost")
-    return ["## Bond laws", "", f"Uniaxial compression to failure, the laws in turns, {found['turns']} times, medians.", "",
+    return ["## Bond laws", "",
+            f"Uniaxial compression to failure, the laws in turns, {found['turns']} times, medians.", "",
             *generated.table(
-                ["bond law", "H, N/m", "share of bonds past the peak: mean", "at the end", "ms per step", "over brittle: wall",
-                 "processor"],
+                ["bond law", "H, N/m", "share of bonds past the peak: mean", "at the end", "ms per step",
+                 "over brittle: wall", "processor"],
                 [[row["bond_law"], f"{row['H']:g}" if row["H"] else "–", f"{row['past_peak_mean']:.3f}",
                   f"{row['past_peak_end']:.3f}", f"{row['ms_a_step_wall']:.2f}", f"{row['ratio_wall']:.2f}",
                   f"{row['ratio_cpu']:.2f}"] for row in found["rows"]])]
@@ -148,7 +149,7 @@ def law_costs(folder):
 
 def drawn(result):
     """The figure: errors and cost of sampling, heat and time step."""
-    figure, axes = plt.subplots(1, 3, figsize=(15, 4.2), constrained_layout=True)
+    figure, axes = plots.canvas(15, 4.2, 1, 3)
     draw(axes[0], result["sampling"], "sampling_period", DEFAULT_SAMPLING,
          ["wear", "distribution", "tip temperature", "energy balance"], "steps")
     draw(axes[1], result["heat"], "heat_period", DEFAULT_HEAT, ["wear", "tip temperature"], "s")
@@ -156,8 +157,8 @@ def drawn(result):
          ["specific energy", "wear", "tip temperature", "energy balance"], "of the critical step", "loop_seconds",
          "wall time of the run, s")
     overhead = result["overhead"]
-    figure.suptitle(f"Test tooth: error against cost. All Python engines at the defaults: {100 * overhead['overhead']:.1f} % "
-                    f"of YADE's step of {1e3 * overhead['median']['dead']:.2f} ms")
+    figure.suptitle("Test tooth: error against cost. All Python engines at the defaults: "
+                    f"{100 * overhead['overhead']:.1f} % of YADE's step of {1e3 * overhead['median']['dead']:.2f} ms")
     return figure
 
 
@@ -190,7 +191,8 @@ def main(folder):
     """All curves, the figure and the numbers."""
     folder.mkdir(parents=True, exist_ok=True)
     result = evaluate(run_all(folder / "runs", jobs()), measure("overhead", folder))
-    drawn(result).savefig(folder / "speed_against_error.png", dpi=110)
+    with matplotlib.rc_context(plots.STYLE):
+        drawn(result).savefig(folder / "speed_against_error.png")
     (folder / "bench.json").write_text(json.dumps(result, indent=1), encoding="utf-8")
     generated.record(folder / "speed_against_error.png", folder / "bench.json")
     print(generated.write_page(folder / "bench.md", [*tables(result), *law_costs(folder), *loading_speed.curve(folder),

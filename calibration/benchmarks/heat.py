@@ -2,8 +2,8 @@
 
     python3 -m calibration.benchmarks.heat DIR
 
-Writes heat.md (tables), figures and provenance.json into DIR. Kernels only, without YADE; takes some minutes. SECTIONS are
-sections of `make validate`. Times of a heat step are processor times, medians of five rounds.
+Writes heat.md (tables), figures and provenance.json into DIR. Kernels only, without YADE; takes some minutes. SECTIONS
+are sections of `make validate`. Times of a heat step are processor times, medians of five rounds.
 """
 import sys
 from pathlib import Path
@@ -24,7 +24,8 @@ def tip_tables(by_size, by_visit):
     return ["## Temperature of a heated face", "",
             "Error against the exact temperature; heat has penetrated to the depth sqrt(a t).", "",
             *generated.table(["node diameter / sqrt(a t)", "error of the node, %", "extrapolated to the face, %"],
-                             [[f"{size:g}", f"{100 * node:+.1f}", f"{100 * face:+.1f}"] for size, node, face in by_size]),
+                             [[f"{size:g}", f"{100 * node:+.1f}", f"{100 * face:+.1f}"]
+                              for size, node, face in by_size]),
             "Additional error of visits that add the heat collected since the last visit:", "",
             *generated.table(
                 ["time between visits / time of heating", *(f"diameter {size:g} sqrt(a t), %" for size in by_visit)],
@@ -56,21 +57,24 @@ def tables(found, space, in_time, tip, seconds):
     return [
         "## Conductivity of random packings", "",
         f"Deviation from the material's conductivity ({studies.SIDE * 1e3:g} mm square, smallest radius "
-        f"{studies.SMALLEST * 1e3:g} mm, seeds {', '.join(map(str, studies.SEEDS))}): mean of both directions (mean over seeds, "
-        "and the worst seed); largest difference of the two directions in a sample of some hundred particles; rms deviation of "
-        "steady temperatures from a linear field, over its range.", "",
+        f"{studies.SMALLEST * 1e3:g} mm, seeds {', '.join(map(str, studies.SEEDS))}): mean of both directions (mean "
+        "over seeds, and the worst seed); largest difference of the two directions in a sample of some hundred "
+        "particles; rms deviation of steady temperatures from a linear field, over its range.", "",
         *generated.table(["packing", "model", "mean, %", "worst seed, %", "x against y, %", "temperatures, %"],
                          conductivity_rows(found)),
         "## Convergence", "",
-        "Step of the face temperatures [Rojek 2003, 7.6.3] on random packings, t = 0.05 L²/a, against the exact solution.", "",
+        "Step of the face temperatures [Rojek 2003, 7.6.3] on random packings, t = 0.05 L²/a, against the exact one.",
+        "",
         *generated.table(["diameters across", "rms error, % of the step", "largest, %"],
                          [*([n, f"{100 * rms:.4f}", f"{100 * largest:.4f}"] for n, rms, largest in space),
                           ["order", f"{-order(space):.2f}", f"{-order(space, 2):.2f}"]]),
-        *generated.table(["heat step over the stable one", "rms error of the step, %", "of step and size (40 across), %"],
+        *generated.table(["heat step over the stable one", "rms error of the step, %",
+                          "of step and size (40 across), %"],
                          [*([f"{f:g}", f"{100 * fine:.4f}", f"{100 * exact:.4f}"] for f, fine, exact in in_time),
                           ["order up to 0.5", f"{order(in_time[1:]):.2f}", ""]]),
         *tip_tables(*tip),
-        "## Cost", "", f"Processor time on one core, {seconds['nodes']:,} nodes and {seconds['contacts']:,} contacts.", "",
+        "## Cost", "",
+        f"Processor time on one core, {seconds['nodes']:,} nodes and {seconds['contacts']:,} contacts.", "",
         *generated.table(["operation", "time"], [
             ["heat step", f"{1e3 * seconds['heat_step']:.1f} ms"],
             ["new matrix after a change of contacts", f"{1e3 * seconds['rewire']:.0f} ms"],

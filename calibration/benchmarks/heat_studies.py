@@ -15,8 +15,8 @@ ROCKS = {"uniform 1-1.5 mm": dict(ratio=1.5, porosity=0.12), "uniform 1-1.2 mm":
          "looser, 0.16": dict(ratio=1.5, porosity=0.16), "graded 1 to 3": dict(ratio=1.5, porosity=0.12, graded=3.0)}
 """Packings in a square: ratio of radii, porosity, and growth of the radii from top to bottom."""
 SIDE, SMALLEST = 0.08, 1e-3
-MODELS = "bars r wide [Rojek 2003]", "bars 2r wide [Rojek 2014]", "fitted to the first packing", "fitted to each packing", \
-    "Voronoi cells"
+MODELS = ("bars r wide [Rojek 2003]", "bars 2r wide [Rojek 2014]", "fitted to the first packing",
+          "fitted to each packing", "Voronoi cells")
 CONDUCTIVITY = 5.0
 
 
@@ -34,7 +34,7 @@ def rock(*, seed, ratio, porosity, graded=1.0, side=SIDE, smallest=SMALLEST):
 
 
 def scale_and_noise(*, positions, side, edges, conductance):
-    """Steady state: (conductivity in x and y, rms deviation of the temperatures from the linear field over its range)."""
+    """Steady state: (conductivity in x and y, rms deviation of temperatures from the linear field over its range)."""
     conductivity = effective_conductivity(positions=positions, edges=edges, conductance=conductance)
     network = HeatNetwork(capacity=np.ones(len(positions)), edges=edges, conductance=conductance, temperature=0.0)
     linear = positions[:, 0] / side
@@ -91,7 +91,7 @@ def jump(found):
 
 
 def errors_in_space(sizes=(20, 40, 80, 160), instant=0.05):
-    """[(across, rms error, largest error)] of [Rojek 2003, 7.6.3], means over three packings; heat step ~ size squared."""
+    """[(across, rms error, largest error)] of [Rojek 2003, 7.6.3], means over three packings."""
     rows = []
     for across in sizes:
         found = []

@@ -1,10 +1,10 @@
-"""Cost of softening bonds: the uniaxial test with each bond law, in turns, its time per step over that of brittle bonds.
+"""Cost of softening bonds: the uniaxial test with each bond law, in turns, its time per step over that of brittle ones.
 
     PYTHONPATH=. yade -n -x -j1 calibration/benchmarks/law_cost.py --out DIR [--turns 5] [--name value ...]
 
 The parameters are those of yade_scripts/uniaxial.py. All laws run from the first load to failure, one after the other,
-`turns` times; a law is compared with the brittle run of the same turn, and medians over the turns are reported. Processor
-time is listed beside wall time, because other processes disturb it less. Writes one row for each law into
+`turns` times; a law is compared with the brittle run of the same turn, and medians over the turns are reported.
+Processor time is listed beside wall time, because other processes disturb it less. Writes one row for each law into
 DIR/law_cost.json, with the ratio along the test beside the share of bonds past their peak. make bench runs it.
 """
 import json
@@ -51,7 +51,7 @@ def a_step(rows, clock):
 def table(runs, H):
     """One row for each law: share of bonds past their peak (mean and at the end), ms per step, ratio to brittle.
 
-    runs: [{law: intervals}], one for each turn. curve: stress (Pa), share past the peak and ratio (cpu) of every interval.
+    runs: [{law: intervals}], one for each turn. curve: stress (Pa), share past the peak and ratio (cpu) of each.
     """
     found = []
     for law in runs[0]:
@@ -73,13 +73,14 @@ def table(runs, H):
 
 def main():
     """Measure, print and write."""
-    values = parameters.read([*PARAMETERS, *run.COMMON, TURNS], sys.argv[1:])
+    values = parameters.read([*PARAMETERS, run.COMMON, TURNS], sys.argv[1:])
     folder = Path(values["out"] or "out/law_cost")
     folder.mkdir(parents=True, exist_ok=True)
     runs = [{law: intervals({**values, "bond_law": law}) for law in LINEAR_LAWS} for _ in range(values["turns"])]
     rows = table(runs, values["H"])
-    (folder / "law_cost.json").write_text(json.dumps({"turns": values["turns"], "rows": rows}, indent=1), encoding="utf-8")
-    print("law           H, N/m   past peak, mean   at the end   ms per step   ratio: wall   cpu   cpu, slowest interval")
+    text = json.dumps({"turns": values["turns"], "rows": rows}, indent=1)
+    (folder / "law_cost.json").write_text(text, encoding="utf-8")
+    print("law           H, N/m   past peak, mean   at the end   ms per step   ratio: wall     cpu   cpu, slowest part")
     for row in rows:
         H = f"{row['H']:.3g}" if row["H"] else "-"
         worst = max(point["ratio"] for point in row["curve"])

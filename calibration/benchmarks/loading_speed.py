@@ -3,8 +3,8 @@
     python3 -m calibration.benchmarks.loading_speed DIR        (part of make bench)
 
 Two sets of bonds (campaigns.uniaxial.ROCKS), in compression and tension, over a decade and a half of speeds. The speed
-matters, not the rate of strain: the error grows with the time that a wave takes through the specimen, which is proportional
-to the specimen's size, while the rate of strain is inversely proportional to it. So 525 discs are enough.
+matters, not the rate of strain: the error grows with the time that a wave takes through the specimen, which is
+proportional to the specimen's size, while the rate of strain is inversely proportional to it. So 525 discs are enough.
 """
 import json
 import sys
@@ -90,10 +90,12 @@ def table(rows):
         cells.setdefault((row["rock"], row["test"], row["quantity"]), []).append(
             f"{100 * row['deviation']:+.1f} ({100 * row['low']:+.1f} … {100 * row['high']:+.1f})")
     return ["## Speed of loading", "",
-            f"Deviation from {SPEEDS[-1]:g} m/s in %, mean and range of {len(SEEDS)} packings of 525 discs. The fastest speed "
-            f"within {100 * TOLERANCE:g} % for every packing: {fastest(rows):g} m/s.", "", *generated.table(
+            f"Deviation from {SPEEDS[-1]:g} m/s in %, mean and range of {len(SEEDS)} packings of 525 discs. The "
+            f"fastest speed within {100 * TOLERANCE:g} % for every packing: {fastest(rows):g} m/s.", "",
+            *generated.table(
                 ["m/s", *(f"{speed:g}" for speed in SPEEDS)],
-                [[f"bonds of [{rock}], {test}, {quantity}", *found] for (rock, test, quantity), found in cells.items()])]
+                [[f"bonds of [{rock}], {test}, {quantity}", *found]
+                 for (rock, test, quantity), found in cells.items()])]
 
 
 def curve(folder):

@@ -2,8 +2,8 @@
 
     PYTHONPATH=. yade -n -x -j1 calibration/benchmarks/overhead.py --out DIR [--name value ...]
 
-Both run five times from one saved state ("dead" is YADE's term for an engine that is switched off). Writes the medians into
-DIR/overhead.json. make bench runs it.
+Both run five times from one saved state ("dead" is YADE's term for an engine that is switched off). Writes the medians
+into DIR/overhead.json. make bench runs it.
 """
 import json
 import os
@@ -23,7 +23,7 @@ TURNS, STEPS, WARM_UP = 5, 3000, 0.0015
 
 def main():
     """Measure and write."""
-    values = parameters.read([*PARAMETERS, *run.COMMON], sys.argv[1:])
+    values = parameters.read([*PARAMETERS, run.COMMON], sys.argv[1:])
     folder = Path(values["out"])
     folder.mkdir(parents=True, exist_ok=True)
     scene = Cutting(values)

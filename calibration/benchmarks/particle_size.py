@@ -2,9 +2,9 @@
 
     python3 -m calibration.benchmarks.particle_size DIR
 
-A tooth of particles and one of segments wear in the two ways of worn_outlines.py, whose exact outlines are known. The wear
-in a visit varies too; in a run it follows from wear_period, wear_acceleration and the work of the cut. Sizes are mean
-diameters. Writes particle_size.md (tables), particle_size.png and provenance.json into DIR.
+A tooth of particles and one of segments wear in the two ways of worn_outlines.py, whose exact outlines are known. The
+wear in a visit varies too; in a run it follows from wear_period, wear_acceleration and the work of the cut. Sizes are
+mean diameters. Writes particle_size.md (tables), particle_size.png and provenance.json into DIR.
 """
 import math
 import sys
@@ -24,8 +24,8 @@ from rockwear.report import plots
 SIZES = 0.3e-3, 0.5e-3, 0.8e-3
 SEEDS = 1, 2, 3
 CUT = dict(width=0.06, height=0.04, radius_min=1.5e-3, radius_max=2.2e-3, tooth_height=0.03, tooth_width=0.02, rake=10,
-           clearance=10, tip_radius=2e-3, depth_of_cut=0.01, start_up=0.008, cycles=0, heat="false", wear_acceleration=1,
-           tool_radius_min=0.22e-3, tool_radius_max=0.28e-3, report="false")
+           clearance=10, tip_radius=2e-3, depth_of_cut=0.01, start_up=0.008, cycles=0, heat="false",
+           wear_acceleration=1, tool_radius_min=0.22e-3, tool_radius_max=0.28e-3, report="false")
 PORTIONS = 1 / 64, 1 / 8, 1 / 2, 2
 """Wear in a visit over the volume of a particle."""
 
@@ -49,11 +49,11 @@ def size_table(ways, off, segments):
                      *(f"{1e3 * found[k].off:.3f}" for found in segments.values()),
                      f"{max(abs(found[k].unexplained) for found in segments.values()):.0e}"])
     rates = " and ".join(f"{rate(off[name]):.2f} ({name})" for name in ways)
-    return [f"Tooth of 30 x 20 mm, {len(SEEDS)} packings for each size. Flat: {1e6 * WORN:g} mm² rubbed off on a plane. Pattern: "
-            f"{1e6 * PATTERN_WORN:g} mm² worn by the friction work of a cut. Error: rms distance between the worn face and the "
-            "exact one. Residual: of the volume balance, over Archard's volume, at most.", "",
-            *generated.table(["mean diameter or length, mm", "particles, flat: error, mm", "pattern: error, mm", "residual",
-                              "segments, flat: error, mm", "pattern: error, mm", "residual"], rows),
+    return [f"Tooth of 30 x 20 mm, {len(SEEDS)} packings for each size. Flat: {1e6 * WORN:g} mm² rubbed off on a "
+            f"plane. Pattern: {1e6 * PATTERN_WORN:g} mm² worn by the friction work of a cut. Error: rms distance "
+            "between the worn face and the exact one. Residual: of the volume balance, over Archard's volume, at most.",
+            "", *generated.table(["mean diameter or length, mm", "particles, flat: error, mm", "pattern: error, mm",
+                              "residual", "segments, flat: error, mm", "pattern: error, mm", "residual"], rows),
             f"The error of particles is proportional to the size to the power {rates}, that of segments to the power "
             f"{rate([row.off for row in segments['flat']]):.2f} (flat).", ""]
 
@@ -68,10 +68,10 @@ def visit_table(polygon, pattern):
         lost = unexplained(rubbed), patterned(pattern, polygon, size, SEEDS[0], "depth", portion).unexplained
         rows.append([f"{portion:.3g}", f"{1e3 * math.sqrt(np.mean([row.off**2 for row in conserving])):.3f}",
                      *(f"{100 * part:+.1f} %" for part in lost)])
-    return [f"Wear in a visit, {1e3 * size:g} mm: error of the outline with removal = volume; removed minus Archard's volume, "
-            "over Archard's, with removal = depth.", "", *generated.table(
-                ["wear in a visit, of a particle", "removal = volume, pattern: error, mm", "removal = depth, flat", "pattern"],
-                rows)]
+    return [f"Wear in a visit, {1e3 * size:g} mm: error of the outline with removal = volume; removed minus Archard's "
+            "volume, over Archard's, with removal = depth.", "", *generated.table(
+                ["wear in a visit, of a particle", "removal = volume, pattern: error, mm", "removal = depth, flat",
+                 "pattern"], rows)]
 
 
 def main(folder):
@@ -121,7 +121,8 @@ def draw(polygon, pattern, ways, off, segments):
             right.loglog([1e3 * size] * len(SEEDS), [1e3 * row.off for row in ways[name][size]], ".", color="0.6")
     for (name, rows), style in zip(segments.items(), ("^--", "v:")):
         errors = [row.off for row in rows]
-        right.loglog(sizes, 1e3 * np.array(errors), style, color="#6a3d9a", label=f"{name}, segments, power {rate(errors):.2f}")
+        right.loglog(sizes, 1e3 * np.array(errors), style, color="#6a3d9a",
+                     label=f"{name}, segments, power {rate(errors):.2f}")
     right.set(xlabel="mean diameter or length / mm", ylabel="error of the worn face / mm", title="convergence")
     right.set_ylim(8e-4, 0.4)
     right.set_xticks(sizes, [f"{s:g}" for s in sizes])

@@ -2,8 +2,8 @@
 
     python3 -m calibration.benchmarks.stability DIR
 
-Runs calibration/benchmarks/stability_runs.py; writes stability.md, stability.png, stability.html and provenance.json into
-DIR. `rows` evaluates a run for calibration/validation too.
+Runs calibration/benchmarks/stability_runs.py; writes stability.md, stability.png, stability.html and provenance.json
+into DIR. `rows` evaluates a run for calibration/validation too.
 """
 import sys
 import time
@@ -25,18 +25,18 @@ FRACTION = 0.8
 BELOW, ABOVE = 0.98, 1.05
 """Fractions of the critical step at which a run must stay bounded, and at which it must become unstable."""
 BOUNDED, UNSTABLE = 2 / (1 - BELOW), 1e8
-"""Kinetic energy over the initial one: upper bound of a stable run (with a margin of 2); lower bound of an unstable one."""
+"""Kinetic energy over the initial one: upper bound (with a margin of 2) if stable, lower bound if unstable."""
 
 HEADER = ["case", "particles", "bonds a particle", "critical step, µs", "at 0.98", "at 1.05", "YADE's limit",
           "GlobalStiffness", "in its first step", "P wave", "gain over GlobalStiffness", "over P wave"]
 WORDS = (
-    "Steps are fractions of the kernel's critical step, which agrees with YADE's limit (by bisection) to 1e-3. A choice above "
-    "1 is unsafe: the run becomes unstable. GlobalStiffness is YADE's GlobalStiffnessTimeStepper with its "
-    "timestepSafetyCoefficient of 0.8 (at 1.0 all its numbers grow by a quarter); in its first step it ignores bonds that "
-    "carry no force yet, and takes 0.8 of the P wave's step where no bond carries any. P wave is utils.PWaveTimeStep, with the "
-    "modulus E = kn/mean radius for which YADE's own springs would have this stiffness; utils.RayleighWaveTimeStep with "
-    "Poisson's ratio 0.25 is 5.4 times as long in each case. Gain: speed at 0.8 of the critical step over theirs, where theirs "
-    "is safe.")
+    "Steps are fractions of the kernel's critical step, which agrees with YADE's limit (by bisection) to 1e-3. A "
+    "choice above 1 is unsafe: the run becomes unstable. GlobalStiffness is YADE's GlobalStiffnessTimeStepper with its "
+    "timestepSafetyCoefficient of 0.8 (at 1.0 all its numbers grow by a quarter); in its first step it ignores bonds "
+    "that carry no force yet, and takes 0.8 of the P wave's step where no bond carries any. P wave is "
+    "utils.PWaveTimeStep, with the modulus E = kn/mean radius for which YADE's own springs would have this stiffness; "
+    "utils.RayleighWaveTimeStep with Poisson's ratio 0.25 is 5.4 times as long in each case. Gain: speed at 0.8 of the "
+    "critical step over theirs, where theirs is safe.")
 
 
 def rows(cases):
@@ -144,8 +144,8 @@ def evaluate(runs):
     return [Row(*row) for row in rows(cases)], {"stability": figure(cases)}
 
 
-SECTIONS = [Section("Critical time step", "Hard cases below and above the critical step, beside the steps that YADE's own "
-                    "estimators allow.", evaluate, {"stability": (SCRIPT, {"bisect": "true"})})]
+SECTIONS = [Section("Critical time step", "Hard cases below and above the critical step, beside the steps that YADE's "
+                    "own estimators allow.", evaluate, {"stability": (SCRIPT, {"bisect": "true"})})]
 
 
 def main(folder):

@@ -2,10 +2,10 @@
 
     PYTHONPATH=. yade -n -x -j1 calibration/benchmarks/stability_runs.py [--particles n] [--bisect] [--out DIR]
 
-Every case is an assembly of unbreakable bonds, without damping except for named dashpots. It starts with random velocities,
-small enough to stay linear, with the same energy in every mode. At a fraction f of the critical step its kinetic energy
-cannot exceed 1/(1 - f) times the initial one; beyond the critical step energy grows exponentially, at 1.05 by a factor of
-three per step. The two results are six decades apart.
+Every case is an assembly of unbreakable bonds, without damping except for named dashpots. It starts with random
+velocities, small enough to stay linear, with the same energy in every mode. At a fraction f of the critical step its
+kinetic energy cannot exceed 1/(1 - f) times the initial one; beyond the critical step energy grows exponentially, at
+1.05 by a factor of three per step. The two results are six decades apart.
 """
 import json
 import math
@@ -44,8 +44,8 @@ STEPS = 2000
 class Assembly:
     """Particles (n, d) in m, bonds (m, 2) with kn and kt (m,) in N/m, and the contacts of a tool if there is one.
 
-    touched: (k,) particles, each pressed from above by its own tool particle; tool_kn, tool_kt in N/m; damping: of these
-    contacts, a fraction of the critical damping.
+    touched: (k,) particles, each pressed from above by its own tool particle; tool_kn, tool_kt in N/m; damping: of
+    these contacts, a fraction of the critical damping.
     """
 
     positions: np.ndarray
@@ -211,7 +211,8 @@ def perturb(a, step):
         v, angular_velocity = rng.standard_normal((2, 3)) * speed
         if a.dimensions == 2:
             v[2] = angular_velocity[:2] = 0.0
-        body.state.vel, body.state.angVel = (v / math.sqrt(mass)).tolist(), (angular_velocity / math.sqrt(inertia)).tolist()
+        body.state.vel = (v / math.sqrt(mass)).tolist()
+        body.state.angVel = (angular_velocity / math.sqrt(inertia)).tolist()
 
 
 def growth(a, step, steps=STEPS, enough=UNSTABLE):

@@ -1,9 +1,9 @@
 """Teeth worn in two ways whose outlines are known exactly, whatever the size of particles or segments.
 
-- flat: a tooth rubs on a plane, and the particle in contact wears. The result is the new tooth without the part of Archard's
-  volume beyond a plane.
-- pattern: the friction work of a miniature cut, smoothed along the outline, wears it along its normals. At the curvature c a
-  depth d takes the volume d - c d^2 / 2 per unit of length.
+- flat: a tooth rubs on a plane, and the particle in contact wears. The result is the new tooth without the part of
+  Archard's volume beyond a plane.
+- pattern: the friction work of a miniature cut, smoothed along the outline, wears it along its normals. At the
+  curvature c a depth d takes the volume d - c d^2 / 2 per unit of length.
 """
 import math
 from types import SimpleNamespace
@@ -146,7 +146,7 @@ class Pattern:
         return (1 - np.sqrt(np.maximum(1 - 2 * c * area, 0.0))) / c
 
     def entries(self, tool):
-        """For each point the particles that its normal intersects, and the depths (m) of the intersections, in order."""
+        """For each point the particles that its normal intersects, and the depths (m) of intersection, in order."""
         tree = cKDTree(tool.positions)
         for point, normal in zip(self.points, self.inward):
             near = np.array(tree.query_ball_point(point + 2.5e-3 * normal, 3.5e-3), int)
@@ -172,7 +172,7 @@ class Pattern:
         return np.array([pair[1][alive[pair[0]]][0] if pair else np.nan for pair in met])
 
     def visits(self, volume, width, most):
-        """Number of visits so that a width (m) of the outline wears by at most `most` (m3) in each, at the densest place."""
+        """Number of visits so that a width (m) of the outline wears by at most `most` (m3) in each."""
         return math.ceil(volume * self.density.max() * width / most)
 
     def wear_segments(self, boundary, volume, size):
@@ -206,7 +206,8 @@ def patterned(pattern, polygon, size, seed, removal="volume", portion=1 / 8):
     """A tooth worn by the pattern: outline, and rms distance (m) from the exact one, averaged over strips."""
     tool = particles(polygon, size, seed, removal)
     found = pattern.wear(tool, PATTERN_WORN, portion)
-    return SimpleNamespace(outline=outline_of(tool), off=pattern.off(found, PATTERN_WORN), unexplained=unexplained(tool))
+    return SimpleNamespace(outline=outline_of(tool), off=pattern.off(found, PATTERN_WORN),
+                           unexplained=unexplained(tool))
 
 
 def patterned_segments(pattern, polygon, size):

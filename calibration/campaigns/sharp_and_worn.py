@@ -2,10 +2,11 @@
 
     python3 -m calibration.campaigns.sharp_and_worn WORN_RUN DIR [SEED ...]
 
-WORN_RUN is the folder of a finished run of a wearing tooth (make campaign-wear writes some). Its outlines, new and at equal
-steps of its mass loss, become teeth without wear; each cuts the same fresh specimens at the same depth, one packing for
-each seed. Writes into DIR the outlines, the runs (finished ones are kept), sharp_and_worn.csv and .md, a figure and a page:
-cutting and thrust force, specific energy and chip size against the mass lost, beside the theories of Evans and Nishimatsu.
+WORN_RUN is the folder of a finished run of a wearing tooth (make campaign-wear writes some). Its outlines, new and at
+equal steps of its mass loss, become teeth without wear; each cuts the same fresh specimens at the same depth, one
+packing for each seed. Writes into DIR the outlines, the runs (finished ones are kept), sharp_and_worn.csv and .md, a
+figure and a page: cutting and thrust force, specific energy and chip size against the mass lost, beside the theories of
+Evans and Nishimatsu.
 """
 import math
 import sys
@@ -19,6 +20,7 @@ from calibration.campaigns.runs import RunFailed, Runs
 from calibration.campaigns.two_tools import scatter
 from calibration.campaigns.uniaxial_tables import write_csv
 from rockwear.kernels import cutting_theory
+from rockwear.kernels.bond_laws import BOND_LAWS
 from rockwear.kernels.checks import ParameterError, require
 from rockwear.report import cutting, page, plots, shapes
 from rockwear.report.folder import RunFolder
@@ -26,11 +28,11 @@ from rockwear.report.folder import RunFolder
 SHAPES = 4
 """Number of outlines, the new one included."""
 SEEDS = 1, 2, 3, 4
-"""Several packings, because a single cut is known to a third only: after its first contacts it may take another course."""
+"""Several packings, because a single cut is known to a third only."""
 CUT = dict(cycles=0, start_up=0.012, wear_acceleration=0, heat="false", grading_factor=3)
 """48 mm of cut at 4 m/s in graded rock; no wear, no heat."""
-ROCK_OF_THE_CUT = ("velocity depth_of_cut kn kt Rn Rt mu tool_kn tool_kt tool_mu contact_damping bond_law H tool_radius_min "
-                   "tool_radius_max").split()
+SAME = "velocity depth_of_cut tool_kn tool_kt tool_mu contact_damping bond_law tool_radius_min tool_radius_max".split()
+"""Parameters of the cuts that are those of WORN_RUN, with those of its bond law."""
 STRENGTH = {"compressive_strength": 164e6, "tensile_strength": 30.4e6}
 """Pa; of the rock of [Rojek 2003, 5.1] in the virtual laboratory (calibration/results/uniaxial.md)."""
 QUANTITIES = {"mean_cutting_force": ("mean cutting force", "N/m"), "peak_cutting_force": ("peak cutting force", "N/m"),
@@ -53,7 +55,7 @@ def outline(run, shot):
 
 
 def effective_rake(polygon, depth):
-    """Angle (rad) from the vertical of the line from the tip to the front at the rock's surface; negative when blunt."""
+    """Angle (rad) from the vertical of the line from the tip to the front at the rock's surface; negative: blunt."""
     following = np.roll(polygon, -1, axis=0)
     through = (polygon[:, 1] < depth) != (following[:, 1] < depth)
     (x, y), (x_next, y_next) = polygon[through].T, following[through].T
@@ -84,9 +86,11 @@ def theory(rake, run):
     friction = math.atan(run.parameter("tool_mu", 0.3))
     cohesion, internal = cutting_theory.mohr_coulomb(**STRENGTH)
     depth = run.parameter("depth_of_cut", math.nan)
-    found = {"Evans": lambda: cutting_theory.evans(tensile_strength=STRENGTH["tensile_strength"], depth=depth, rake=rake),
+    found = {"Evans": lambda: cutting_theory.evans(
+                 tensile_strength=STRENGTH["tensile_strength"], depth=depth, rake=rake),
              "Nishimatsu": lambda: cutting_theory.nishimatsu(
-                 shear_strength=cohesion, internal_friction=internal, depth=depth, rake=rake, friction_angle=friction)[0]}
+                 shear_strength=cohesion, internal_friction=internal, depth=depth, rake=rake,
+                 friction_angle=friction)[0]}
 
     def value(force):
         try:
@@ -118,9 +122,10 @@ def figure(teeth, rows):
         if name == "peak_cutting_force":
             # The theories give the force at which a chip breaks off; for a blunt tool they are far from the peak.
             for theory_name, style in (("Evans", "s:"), ("Nishimatsu", "^--")):
-                axes.plot([100 * tooth["lost"] for tooth in teeth], [factor * tooth[theory_name] for tooth in teeth], style,
-                          markersize=4, color="#2c6e91", label=theory_name)
-            highest = np.nanmax([values.max(), *(factor * tooth[name] for tooth in teeth for name in ("Evans", "Nishimatsu"))])
+                axes.plot([100 * tooth["lost"] for tooth in teeth], [factor * tooth[theory_name] for tooth in teeth],
+                          style, markersize=4, color="#2c6e91", label=theory_name)
+            highest = np.nanmax([values.max(), *(factor * tooth[theory_name] for tooth in teeth
+                                                 for theory_name in ("Evans", "Nishimatsu"))])
             axes.set(yscale="log", ylim=(0.3 * np.nanmin(values), 2 * highest))
             axes.legend(fontsize=8)
     return drawn
@@ -132,7 +137,8 @@ def main(worn_run, folder, seeds=SEEDS):
     require({"tool_volumes", "rock_radii"} <= set(run.model) and len(run.times), "WORN_RUN", str(worn_run),
             "the folder of a cut in the plane with a tool of particles")
     (folder / "outlines").mkdir(parents=True, exist_ok=True)
-    common = {name: run.parameters[name] for name in ROCK_OF_THE_CUT if name in run.parameters}
+    law = [parameter.name for parameter in BOND_LAWS[run.parameters["bond_law"]].parameters]
+    common = {name: run.parameters[name] for name in [*SAME, *law] if name in run.parameters}
     teeth = []
     for number, (lost, shot) in enumerate(stages(run)):
         polygon = outline(run, shot)
@@ -166,11 +172,14 @@ def write_page(folder, teeth, rows):
         cuts.append([f"{100 * tooth['lost']:.1f} % lost", f"{math.degrees(tooth['rake']):.0f}°", *cells,
                       *(page.quantity(tooth[name], "N/m") for name in ("Evans", "Nishimatsu"))])
     header = ("tooth", "effective rake", *(label for label, _ in QUANTITIES.values()), "Evans", "Nishimatsu")
-    (folder / "report.html").write_text(page.document("sharp and worn", f"{len(rows)} cuts", [page.Section(
-        "Effect of wear on the cut", "The same specimens cut at the same depth by the new tooth and by its worn outlines; "
-        "± is the standard error of the mean over packings. The theories give the force at which a chip breaks off, to be "
-        "compared with the peak. They take the rake of the line from the lowest point to the front at the rock's surface, and "
-        "the strengths of the virtual laboratory.", [page.image(path), page.table(cuts, header)])]), encoding="utf-8")
+    section = page.Section(
+        "Effect of wear on the cut", "The same specimens cut at the same depth by the new tooth and by its worn "
+        "outlines; ± is the standard error of the mean over packings. The theories give the force at which a chip "
+        "breaks off, to be compared with the peak. They take the rake of the line from the lowest point to the front "
+        "at the rock's surface, and the strengths of the virtual laboratory.",
+        [page.image(path), page.table(cuts, header)])
+    text = page.document("sharp and worn", f"{len(rows)} cuts", [section])
+    (folder / "report.html").write_text(text, encoding="utf-8")
     generated.write_page(folder / "sharp_and_worn.md", generated.table(header, cuts))
     generated.record(path, folder / "sharp_and_worn.csv", folder / "report.html")
 

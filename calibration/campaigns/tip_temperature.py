@@ -41,7 +41,8 @@ def loading(factor):
 OPEN = {
     "packing (scatter)": {"seed 1": {}, "seed 2": dict(seed=2), "seed 3": dict(seed=3)},
     "tool discs at the surface": {"0.35 mm": size(0.35e-3), "0.5 mm": {}, "0.8 mm": size(0.8e-3)},
-    "conductance between particles": {"voronoi": {}, **{name: dict(bond_conductance=name) for name in ("bar", "half_bar")}},
+    "conductance between particles": {"voronoi": {}, **{name: dict(bond_conductance=name)
+                                                        for name in ("bar", "half_bar")}},
     "conductance tool to rock": {"150 W/m²K": dict(contact_conductance=150), "1500 W/m²K": {},
                                  "15000 W/m²K": dict(contact_conductance=15000)},
     "air or water": {"air, 30": {}, **{f"water, {h}": dict(convection=h) for h in (5000, 25000)}},
@@ -70,7 +71,7 @@ def measure(folder, scene, quick=False, at_once=2):
 
 
 def merged(rises):
-    """[(K, names)] of {name: K} in rising order, values within an eighth of each other as one, so that labels keep apart."""
+    """[(K, names)] of {name: K} in rising order; values within an eighth of each other share a label."""
     found = []
     for name, rise in sorted(rises.items(), key=lambda entry: entry[1]):
         if found and rise < 1.125 * found[-1][0]:

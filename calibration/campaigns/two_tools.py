@@ -2,8 +2,8 @@
 
     python3 -m calibration.campaigns.two_tools FIGURE.png FOLDER [FOLDER ...]
 
-Reads run folders of yade_scripts/tooth_cycles.py with --tool particles and --tool segments, several seeds each, draws the
-figure and writes a table of the same name (.md) beside it. calibration/results/facet_tools.md states the result.
+Reads run folders of yade_scripts/tooth_cycles.py with --tool particles and --tool segments, several seeds each, draws
+the figure and writes a table of the same name (.md) beside it. calibration/results/facet_tools.md states the result.
 """
 import sys
 from pathlib import Path
@@ -79,11 +79,12 @@ def figure(groups):
         shares = 100 * np.array([share_of_friction(run) for run in runs])
         at = KEPT if factor == 0 else factor * (1.15 if tool == "segments" else 1 / 1.15)
         left.plot(np.full(len(runs), at), shares, ".", color=COLOURS[tool], alpha=0.4)
-        left.errorbar(at, *scatter(shares), color=COLOURS[tool], marker="s", capsize=4, label=tool if factor == 0 else None)
+        left.errorbar(at, *scatter(shares), color=COLOURS[tool], marker="s", capsize=4,
+                      label=tool if factor == 0 else None)
         if factor == 0:
             depth = np.mean([profile(run) for run in runs], axis=0)
-            right.step(plots.MM * (EDGES[1:] + EDGES[:-1]) / 2, 100 * depth / (plots.MM * PLACE * depth.sum()), where="mid",
-                       color=COLOURS[tool], label=f"{tool}, {len(runs)} seeds")
+            right.step(plots.MM * (EDGES[1:] + EDGES[:-1]) / 2, 100 * depth / (plots.MM * PLACE * depth.sum()),
+                       where="mid", color=COLOURS[tool], label=f"{tool}, {len(runs)} seeds")
     left.set(xscale="log", xlabel="wear acceleration; leftmost: constant shape", ylim=(0, None),
              ylabel="friction on the tool / % of its work", title="each seed, mean and its standard error")
     right.set(xlabel="arc length from the tip, up the front / mm", ylabel="share of the wear / % per mm",

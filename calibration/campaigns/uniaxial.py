@@ -2,8 +2,8 @@
 
     python3 -m calibration.campaigns.uniaxial DIR [CAMPAIGN ...] [--read]
 
-Two runs at a time, a folder a run; finished runs are not repeated, so that an interrupted campaign resumes. --read starts
-no run and evaluates those that exist. Writes into DIR uniaxial.csv (strengths and moduli by case and packing),
+Two runs at a time, a folder a run; finished runs are not repeated, so that an interrupted campaign resumes. --read
+starts no run and evaluates those that exist. Writes into DIR uniaxial.csv (strengths and moduli by case and packing),
 stress_strain.csv, uniaxial.md (tables), the figures and provenance.json.
 """
 import math
@@ -35,7 +35,7 @@ SOFTENING = {"damage 2e10": dict(bond_law="damage", H=2e10), "damage 5e9": dict(
 """The other curves of [Rojek 2003, figs. 5.6 and 5.10]."""
 
 SPEED = dict(speed=0.1)
-"""Of loading: strengths up to 4 % too high (see loading_speed), less than the scatter, at half the cost of the default."""
+"""Of loading: strengths up to 4 % too high (loading_speed.py), less than the scatter, at half the default's cost."""
 
 SANDSTONE = dict(kn=20e9, kt=4e9, Rn=0.1e6, Rt=0.1e6, mu=0.8)
 """[Rojek 2014, 5.2]."""
@@ -160,8 +160,8 @@ def write(folder):
         if rows[campaign]:
             maps = {(case, seed): tables.crack_map(run) for (case, test, seed), run in runs[campaign].items()
                     if test == "compression"}
-            lines += [f"### {TITLES[campaign]}: against the brittle law", "", *tables.against(rows[campaign], "brittle"),
-                      *tables.likeness(maps)]
+            lines += [f"### {TITLES[campaign]}: against the brittle law", "",
+                      *tables.against(rows[campaign], "brittle"), *tables.likeness(maps)]
     written = [folder / "stress_strain.csv", folder / "uniaxial.csv"]
     write_curves(written[0], {**runs["laws"], **runs["softening"]})
     with matplotlib.rc_context(plots.STYLE):

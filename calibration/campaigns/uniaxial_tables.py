@@ -18,7 +18,7 @@ DENSEST = 0.2
 
 
 def row_of(campaign, case, test, seed, run):
-    """{column: value} of a run in SI, with the relative residual of the energy balance and the localisation of its cracks."""
+    """{column: value} of a run in SI, with the relative residual of energy and the localisation of cracks."""
     balance = run.summary["balances"]["energy"]
     return {"campaign": campaign, "case": case, "test": test, "seed": seed,
             **{name: run.result(name) for name in RESULTS},
@@ -72,7 +72,7 @@ def shown(values, scale=1.0, digits=1):
 
 
 def strengths(rows):
-    """Table with one row a case: packings, UCS, tensile strength, their ratio, E, nu, cracks at the peak, localisation."""
+    """Table with one row a case: packings, strengths, their ratio, E, nu, cracks at the peak, localisation."""
     lines = []
     for case in dict.fromkeys(row["case"] for row in rows):
         compressed, pulled = ([row for row in rows if (row["case"], row["test"]) == (case, test)] for test in TESTS)

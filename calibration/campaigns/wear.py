@@ -2,8 +2,8 @@
 
     python3 -m calibration.campaigns.wear DIR [CASE ...]            (make campaign-wear)
 
-All cases, or those named; two runs at a time, a folder a run. An interrupted campaign resumes: finished runs are kept, the
-others continue from their checkpoints. The last part cuts fresh rock with the worn outlines of the ripper
+All cases, or those named; two runs at a time, a folder a run. An interrupted campaign resumes: finished runs are kept,
+the others continue from their checkpoints. The last part cuts fresh rock with the worn outlines of the ripper
 (calibration.campaigns.sharp_and_worn). Writes report.html, wear.md (tables), figures and provenance.json into DIR.
 """
 import sys
@@ -39,7 +39,7 @@ CASES = {
 }
 SAME_WORK = {"a hundredth": ("test tooth, 2.5e4", "test tooth, 5e4", "test tooth, 1e5"),
              "a quarter": ("test tooth, 2e5", "test tooth, 4e5", "test tooth, 8e5", "test tooth, 1.6e6")}
-"""First rule of [Rocky]: wear twice as fast and half as long, repeatedly, until the same part of the tooth is worn off."""
+"""First rule of [Rocky]: wear twice as fast and half as long, repeatedly, until the same part is worn off."""
 WORN = "ripper, 2e5"
 """The run whose outlines cut fresh rock."""
 COARSE = dict(grading_factor=3)
@@ -79,7 +79,8 @@ def comparison_figure(runs):
     along.legend(fontsize=8)
     against.semilogx(factors, found[1:], "o", color="#b5651d", label="difference from the slowest run")
     against.semilogx(factors, expected[1:], "s-", color="#2c6e91", label="expected from both runs' own records")
-    against.set(xlabel="wear acceleration, at the same work", ylabel="difference of the distributions / %", ylim=(0, None))
+    against.set(xlabel="wear acceleration, at the same work", ylabel="difference of the distributions / %",
+                ylim=(0, None))
     against.set_xticks(factors, [f"{factor:g}" for factor in factors])
     against.set_xticks([], minor=True)
     against.legend(fontsize=8)
@@ -117,13 +118,13 @@ def wear_table(runs):
     for name, run in runs.items():
         hours = run.result("working_time") * run.parameter("wear_acceleration", 1.0) / 3600
         lost = 100 * run.result("worn_volume") / run.model["tool_volumes"].sum()
-        friction = run.summary["balances"]["friction"]["tool"]
+        friction, mass = (run.summary["balances"][name] for name in ("friction", "mass"))
         rows.append((name, page.quantity(run.result("simulated_time"), "s"), f"{hours:.2f} h", f"{lost:.3g} %",
                      f"{lost / hours:.2g} %/h", page.quantity(run.result("mean_cutting_force"), "N/m"),
-                     page.percent(friction, run.summary["balances"]["energy"]["tool_work"]),
+                     page.percent(friction["tool"], run.summary["balances"]["energy"]["tool_work"]),
                      page.percent(run.result("wear_distribution_error"), 1.0),
                      page.number(run.result("trusted_wear_acceleration")),
-                     page.percent(run.summary["balances"]["mass"]["unexplained"], run.summary["balances"]["mass"]["archard"])))
+                     page.percent(mass["unexplained"], mass["archard"])))
     return rows, ("run", "simulated", "stands for", "worn off", "rate", "mean cutting force", "friction, of the work",
                   "error of the distribution", "trusted wear acceleration", "wear against Archard's volume")
 
@@ -148,7 +149,7 @@ def comparison_sections(folder, found):
 
 
 def main(folder, *names):
-    """Run the missing ones of the named cases, all by default, and write the page. -> exit code, 1 where a run failed."""
+    """Run the missing ones of the named cases (default: all) and write the page. -> exit code; 1: a run failed."""
     unknown = set(names) - set(CASES)
     if unknown:
         sys.exit(f"wear campaign: no such case: {', '.join(sorted(unknown))}; there are: {'; '.join(CASES)}")
@@ -166,8 +167,8 @@ def main(folder, *names):
         mass_loss(found).savefig(folder / "mass_loss.png")
         compared, differences = comparison_sections(folder, found)
     rows, header = wear_table(found)
-    sections = [page.Section("Rate of wear", "Left as simulated, right over the working time times wear acceleration: equal "
-                             "rates coincide. The star is the test tooth of [Rojek 2003, 9.2].",
+    sections = [page.Section("Rate of wear", "Left as simulated, right over the working time times wear acceleration: "
+                             "equal rates coincide. The star is the test tooth of [Rojek 2003, 9.2].",
                              [page.image(folder / "mass_loss.png"), page.table(rows, header)]), *compared]
     generated.write_page(folder / "wear.md", [*generated.table(header, rows), *(
         generated.table(COMPARISON_HEADER, differences) if differences else ())])

@@ -10,9 +10,9 @@ One row for each test: a block pressed with a known force slides over a known di
     temperature    degC, K          hardness  HB, Pa, MPa          has precedence over steel and temperature
     friction       N, kN            measured friction force; default: mu times the force
 
-`<name> error [unit]` is the standard error of a column, where known. Default FILE: the four tests of [Rojek 2003, 6.6], with
-half the last digit as errors. Its depths are differences: 2.0 - 0.4 mm and 6 - 4 mm, over 100 m. Its published k take
-10 MPa for 1 HB (option --brinell 1e7); the results of eqs. 6.14 and 6.15 are interchanged there.
+`<name> error [unit]` is the standard error of a column, where known. Default FILE: the four tests of [Rojek 2003, 6.6],
+with half the last digit as errors. Its depths are differences: 2.0 - 0.4 mm and 6 - 4 mm, over 100 m. Its published k
+take 10 MPa for 1 HB (option --brinell 1e7); the results of eqs. 6.14 and 6.15 are interchanged there.
 """
 import argparse
 import csv
@@ -129,16 +129,17 @@ def _hardness(row, errors, brinell):
 def fit(rows, *, law="pressure", mu=0.3, exponent=1.0, modes="", brinell=BRINELL):
     """Fit the law to each steel's rows. -> {steel: {"tests", "error", "law", "fit", "rows": [(k, error)], "exponent"}}.
 
-    exponent: of the power law; None fits it too. Each row is also fitted alone unless the law has several modes.
+    exponent: of the power law; None fits it too. Each row is also fitted alone unless the law has several modes. Raises
+    ParameterError, for an exponent or modes that the law does not have too.
     """
-    require(law == "power" or exponent == 1, "exponent", exponent, f"left out with the law {law}")
-    require(law == "modes" or not modes, "modes", modes, f"left out with the law {law}")
+    require(law == "power" or exponent == 1, "exponent", exponent or "fit", f"left out with wear_law = {law}")
+    require(law == "modes" or not modes, "modes", modes, f"left out with wear_law = {law}")
     values = {"wear_coefficient": 1.0, "wear_exponent": exponent or 1.0, "wear_modes": modes}
+    start = WEAR_LAWS[law].from_values(values, mu)
     found = {}
     for steel in dict.fromkeys(row.get("steel", "") for row in rows):
         own = [row for row in rows if row.get("steel", "") == steel]
         tests = tests_of(own, mu=mu, brinell=brinell)
-        start = WEAR_LAWS[law].from_values(values, mu)
         if law == "power" and exponent is None:
             fitted, result, n = start.fit_exponent(tests)
         else:
@@ -149,7 +150,8 @@ def fit(rows, *, law="pressure", mu=0.3, exponent=1.0, modes="", brinell=BRINELL
             for row in own:
                 _, one = alone.fit(tests_of([row], mu=mu, brinell=brinell))
                 single.append((float(one.k[0]), float(one.uncertainty[0])))
-        found[steel] = {"error": fitted.error_of(tests), "tests": tests, "law": fitted, "fit": result, "rows": single, "exponent": n}
+        found[steel] = {"error": fitted.error_of(tests), "tests": tests, "law": fitted, "fit": result, "rows": single,
+                        "exponent": n}
     return found
 
 
@@ -188,7 +190,8 @@ def draw(found, file):
         tests, colour = one["tests"], f"C{number}"
         x, rate = 1e3 * tests.pressure / tests.hardness, 1e6 * tests.depth / tests.distance
         axes.errorbar(x, rate, yerr=rate * tests.rate_error,
-                      xerr=x * np.hypot(tests.pressure_error, tests.hardness_error), fmt="o", color=colour, capsize=3, zorder=3)
+                      xerr=x * np.hypot(tests.pressure_error, tests.hardness_error), fmt="o", color=colour, capsize=3,
+                      zorder=3)
         if isinstance(one["law"], SumOfModes):
             words = ", ".join(f"{k:.3g}" for k in one["fit"].k)
             axes.plot(x, 1e6 * one["fit"].depth / tests.distance, "x", color=colour,
@@ -207,7 +210,8 @@ def main(words=None):
     """Command line. -> exit code: 0, or 2 for invalid input, reported in one line."""
     parser = argparse.ArgumentParser(prog="python3 -m calibration.fitting.wear_fit", description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("file", nargs="?", default=str(EXAMPLE), help="CSV file; default: the four tests of [Rojek 2003, 6.6]")
+    parser.add_argument("file", nargs="?", default=str(EXAMPLE),
+                        help="CSV file; default: the four tests of [Rojek 2003, 6.6]")
     parser.add_argument("--wear_law", default="pressure", choices=sorted(WEAR_LAWS))
     parser.add_argument("--mu", default="0.3", help="friction coefficient, where friction is not measured")
     parser.add_argument("--exponent", default="1", help="n of the power law, or fit")

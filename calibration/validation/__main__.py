@@ -2,8 +2,9 @@
 
     python3 -m calibration.validation DIR     (make validate)
 
-Independent sections, each with runs of scenes and a function that evaluates them; two runs at a time. A required row that
-fails makes the exit code 1. Where a row compares with a number from a publication, "differs" is a valid result too.
+Independent sections, each with runs of scenes and a function that evaluates them; two runs at a time. A required row
+that fails makes the exit code 1. Where a row compares with a number from a publication, "differs" is a valid result
+too.
 """
 import json
 import sys
@@ -28,7 +29,8 @@ def two_discs(runs):
     rows = [Row("all laws: YADE against the kernel, of Rn", 0.0, found("largest deviation"), 1e-6)]
     for law in ("plastic", "damage"):
         rows += [Row(f"{law}: peak in tension", 1e5, found(f"{law}, tension: peak"), 1e3, "N"),
-                 Row(f"{law}: opening at separation", 15.0, 1e6 * found(f"{law}, tension: opening at the end"), 0.15, "µm"),
+                 Row(f"{law}: opening at separation", 15.0, 1e6 * found(f"{law}, tension: opening at the end"), 0.15,
+                     "µm"),
                  Row(f"{law}: work until separation", 0.75, found(f"{law}, tension: work until gone"), 1e-4, "J")]
     return rows, {}
 
@@ -39,8 +41,8 @@ def tooth(runs):
     for name, run in runs.items():
         energy, heat_balance, mass, friction = (run.summary["balances"][balance]
                                                 for balance in ("energy", "heat", "mass", "friction"))
-        rows += [Row(f"{name}: energy accounted for, of the tool's work", 1.0, 1 - energy["residual"] / energy["tool_work"],
-                     0.01),
+        rows += [Row(f"{name}: energy accounted for, of the tool's work", 1.0,
+                     1 - energy["residual"] / energy["tool_work"], 0.01),
                  Row(f"{name}: heat accounted for, of the heat generated", 1.0,
                      1 - heat_balance["residual"] / heat_balance["generated"], 1e-8),
                  Row(f"{name}: removed volume over Archard's", 1.0, 1 + mass["unexplained"] / mass["archard"], 1e-9),
@@ -71,8 +73,8 @@ def evaluated(section, futures):
 
 def shown(section, rows, figures, error, folder):
     """The section of the page; its figures are written to `folder` as well."""
-    pieces = [page.table([row.cells() for row in rows], ["quantity", "expected", "found", "deviation", "allowed", "verdict"])
-              if rows else ""]
+    header = "quantity", "expected", "found", "deviation", "allowed", "verdict"
+    pieces = [page.table([row.cells() for row in rows], header) if rows else ""]
     for name, figure in figures.items():
         figure.savefig(folder / f"{name}.png")
         pieces.append(page.image(folder / f"{name}.png"))
@@ -84,8 +86,8 @@ def main(folder):
     folder.mkdir(parents=True, exist_ok=True)
     table, pages, failed = [], [], 0
     with Runs(folder) as runs, matplotlib.rc_context(plots.STYLE):
-        queue = [(section, {name: runs.start(name, script, **values) for name, (script, values) in section.runs.items()})
-                 for section in SECTIONS]
+        queue = [(section, {name: runs.start(name, script, **values)
+                            for name, (script, values) in section.runs.items()}) for section in SECTIONS]
         for section, futures in queue:
             rows, figures, error = evaluated(section, futures)
             pages.append(shown(section, rows, figures, error, folder))

@@ -1,4 +1,4 @@
-"""Sections of make validate about the virtual laboratory: the three bond laws, a published sandstone, speed of loading."""
+"""Sections of make validate about the virtual laboratory: three bond laws, a published sandstone, loading speed."""
 from statistics import mean
 
 from calibration.campaigns import uniaxial_figures as figures
@@ -22,8 +22,8 @@ def balances(name, run):
     """Rows required of every laboratory run."""
     balance = run.summary["balances"]["energy"]
     return [Row(f"{name}: the specimen failed", 1, run.result("failed"), 0),
-            Row(f"{name}: energy accounted for, of the platens' work", 1.0, 1 - balance["residual"] / balance["platen_work"],
-                0.02)]
+            Row(f"{name}: energy accounted for, of the platens' work", 1.0,
+                1 - balance["residual"] / balance["platen_work"], 0.02)]
 
 
 def laws(runs):
@@ -85,7 +85,8 @@ def slow_enough(runs):
 
 SECTIONS = [
     Section("Laboratory: the laws of [Rojek 2003, 5.1]", "The three laws; H on 525 discs of three packings.", laws,
-            {**{folder_of(case, test, 1): uniaxial(test=test, **values) for case, values in MAIN.items() for test in TESTS},
+            {**{folder_of(case, test, 1): uniaxial(test=test, **values)
+                for case, values in MAIN.items() for test in TESTS},
              **{f"small-{folder_of(case, 'compression', seed)}": uniaxial(seed=seed, **SMALL, **values)
                 for seed in SEEDS for case, values in SOFT.items()}}),
     Section("Laboratory: the sandstone of [Rojek 2014, 5.2]", "Its micro-parameters, mean of three packings; "

@@ -7,7 +7,7 @@ from typing import Callable
 class Row:
     """One quantity; it may deviate by up to `allowed` (in the quantity's unit).
 
-    source: the expected value is what a publication reports of its rock or model; a deviation is information, no failure.
+    source: the expected value is published of another rock or model; a deviation is no failure.
     """
 
     quantity: str
@@ -27,8 +27,8 @@ class Row:
     def cells(self):
         """The row of the printed table."""
         unit = f" {self.unit}" if self.unit else ""
-        return [self.quantity, f"{self.expected:g}{unit}", f"{self.found:.6g}{unit}", f"{self.found - self.expected:+.2g}",
-                f"{self.allowed:.2g}", self.verdict]
+        return [self.quantity, f"{self.expected:g}{unit}", f"{self.found:.6g}{unit}",
+                f"{self.found - self.expected:+.2g}", f"{self.allowed:.2g}", self.verdict]
 
 
 @dataclass

@@ -8,10 +8,11 @@ from calibration.validation.verdicts import Row, Section
 from rockwear.report.plots import MM, canvas
 
 SCRIPT = "yade_scripts/sliding_wear.py"
-ROWS = {"lab_MET71_34MPa": dict(hardness_table="MET71", wear_coefficient=0.0023, force=885, area=26e-6, temperature=429.15),
-        "lab_MET71_28MPa": dict(hardness_table="MET71", wear_coefficient=0.0028, force=840, area=30e-6, temperature=419.15),
-        "lab_MET91_9.1MPa": dict(hardness_table="MET91", wear_coefficient=0.0113, force=622, area=68e-6, temperature=401.15),
-        "lab_MET91_9.0MPa": dict(hardness_table="MET91", wear_coefficient=0.01125, force=1237, area=138e-6, temperature=486.15)}
+COLUMNS = "hardness_table", "wear_coefficient", "force", "area", "temperature"
+ROWS = {"lab_MET71_34MPa": dict(zip(COLUMNS, ("MET71", 0.0023, 885, 26e-6, 429.15))),
+        "lab_MET71_28MPa": dict(zip(COLUMNS, ("MET71", 0.0028, 840, 30e-6, 419.15))),
+        "lab_MET91_9.1MPa": dict(zip(COLUMNS, ("MET91", 0.0113, 622, 68e-6, 401.15))),
+        "lab_MET91_9.0MPa": dict(zip(COLUMNS, ("MET91", 0.01125, 1237, 138e-6, 486.15)))}
 """[Rojek 2003, eqs. 6.12-6.15, tables 6.2 and 6.3]."""
 RISING = {f"{name}_heating_by_350K": {**ROWS[name], "temperature_rise": 350}
           for name in ("lab_MET71_34MPa", "lab_MET91_9.0MPa")}
@@ -20,7 +21,7 @@ ALLOWED, ALLOWED_RISING = 1e-3, 5e-3
 
 
 def laboratory(runs):
-    """k returned over k given, from the depth that the block has lost and the known force; the balance of the volume."""
+    """k returned over k given, from the lost depth and the known force; the balance of the volume."""
     rows = []
     figure, (axes,) = canvas(7, 4.5)
     for name, run in runs.items():
@@ -45,9 +46,11 @@ def both_tools(runs):
     """Worn volume and friction of the two tools, whose means may differ by the scatter of their packings."""
     groups, rows = two_tools.grouped(runs.values()), []
     for quantity, unit, of in (("worn volume, unaccelerated", "um2", lambda run: 1e12 * two_tools.worn_once(run)),
-                               ("friction, % of the tool's work", "", lambda run: 100 * two_tools.share_of_friction(run))):
+                               ("friction, % of the tool's work", "",
+                                lambda run: 100 * two_tools.share_of_friction(run))):
         particles, segments = ([of(run) for run in found] for found in groups.values())
-        rows.append(Row(f"{quantity}: segments against particles", statistics.mean(particles), statistics.mean(segments),
+        rows.append(Row(f"{quantity}: segments against particles", statistics.mean(particles),
+                        statistics.mean(segments),
                         math.hypot(statistics.stdev(particles), statistics.stdev(segments)), unit))
     return rows, {"two_tools": two_tools.figure(groups)}
 

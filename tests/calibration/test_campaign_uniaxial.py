@@ -43,7 +43,8 @@ def test_cracks_alike_and_localised():
 
 def test_the_default_speed_is_the_fastest_below_which_all_is_within_the_tolerance():
     def rows(*off):
-        return [{"speed": speed, "low": min(d, 0.0), "high": max(d, 0.0)} for speed, d in zip(loading_speed.SPEEDS, off)]
+        return [{"speed": speed, "low": min(d, 0.0), "high": max(d, 0.0)}
+                for speed, d in zip(loading_speed.SPEEDS, off)]
 
     assert loading_speed.fastest(rows(0.05, 0.03, 0.015, -0.01, 0.003, 0)) == 0.1
     assert loading_speed.fastest(rows(0.0, 0.0, 0.0, -0.03, 0.0, 0)) == 0.025

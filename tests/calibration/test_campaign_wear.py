@@ -31,7 +31,8 @@ def campaign(tmp_path_factory):
                 name: (campaign_wear.TOOTH, {**WEARING, **values}) for name, values in CASES.items()})
             patch.setattr(campaign_wear, "SAME_WORK", {"a hundredth": tuple(CASES), "a quarter": ("test tooth, 9e9",)})
             patch.setattr(sharp_and_worn, "SHAPES", 2)
-            patch.setattr(sharp_and_worn, "CUT", {**sharp_and_worn.CUT, **SMALL_ROCK, "start_up": 6e-4, "report": "false"})
+            patch.setattr(sharp_and_worn, "CUT", {**sharp_and_worn.CUT, **SMALL_ROCK, "start_up": 6e-4,
+                                                  "report": "false"})
             patch.setattr(sharp_and_worn, "main", partial(sharp_and_worn.main, seeds=SEEDS))
             campaign_wear.main(folder)
     run()
@@ -49,7 +50,8 @@ def test_what_the_figure_of_accelerations_compares(campaign):
     runs = {name: RunFolder(campaign[0] / name.replace(", ", "-").replace(" ", "_")) for name in CASES}
     slow, fast = runs.values()
     assert campaign_wear.profile(slow).sum() == pytest.approx(slow.result("worn_volume"), rel=1e-6)
-    found, = [line.get_ydata() for line in campaign_wear.comparison_figure(runs).axes[1].lines if line.get_marker() == "o"]
+    lines = campaign_wear.comparison_figure(runs).axes[1].lines
+    found, = [line.get_ydata() for line in lines if line.get_marker() == "o"]
     share_of_fast, share_of_slow = (share / share.sum() for share in map(campaign_wear.profile, (fast, slow)))
     assert found == pytest.approx([100 * np.abs(share_of_fast - share_of_slow).sum()])
     assert found[0] > 0
@@ -107,8 +109,8 @@ def test_the_rake_of_a_straight_front_is_its_own(rake):
 
 
 def test_a_folder_that_is_no_run_ends_in_one_line(tmp_path):
-    done = subprocess.run([sys.executable, "-m", "calibration.campaigns.sharp_and_worn", tmp_path / "nowhere", tmp_path / "out"], cwd=ROOT,
-                          capture_output=True, encoding="utf-8")
+    command = [sys.executable, "-m", "calibration.campaigns.sharp_and_worn", tmp_path / "nowhere", tmp_path / "out"]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, encoding="utf-8")
     assert done.returncode == 2 and done.stderr.startswith("error: ") and done.stderr.count("\n") == 1
     assert not (tmp_path / "out").exists()
 

@@ -1,4 +1,4 @@
-"""The fitting helper on M's four rows and on rows of one's own, as a user runs it."""
+"""The fitting command on the four published tests and on other tests, as a user runs it."""
 import json
 
 import numpy as np
@@ -13,14 +13,14 @@ def rows_of(found):
     return [k for one in found.values() for k, _ in one["rows"]]
 
 
-def test_ms_four_rows_with_ms_unit_of_hardness_give_ms_k():
-    """M rounds a HB to 10 MPa, and its k to 1e-4; 6.14 and 6.15 are printed in each other's place."""
+def test_the_published_tests_with_the_published_unit_of_hardness_give_the_published_k():
+    """[Rojek 2003] rounds a HB to 10 MPa, and its k to 1e-4; the results of eqs. 6.14 and 6.15 are interchanged."""
     found = rows_of(fit(read(EXAMPLE, 1e7), brinell=1e7))
     assert [round(k, 4) for k in found[:2]] == [0.0023, 0.0028]
     assert found[2] == pytest.approx(0.01125, rel=2e-3) and found[3] == pytest.approx(0.0113, rel=2e-3)
 
 
-def test_ms_four_rows_in_si_hold_ms_k_within_their_errors():
+def test_the_published_tests_in_si_give_the_published_k_within_their_errors():
     found = fit(read(EXAMPLE))
     singles = [pair for one in found.values() for pair in one["rows"]]
     for (k, u), published in zip(singles, (0.0023, 0.0028, 0.0113, 0.01125)):
@@ -58,15 +58,16 @@ def test_errors_propagate_column_by_column(tmp_path):
 def test_errors_count_as_often_as_their_quantity_stands_in_k(tmp_path):
     """k = (w / s) (H / p)^n, and with measured friction k = w H mu A / (s T), whatever the force."""
     file = tmp_path / "mine.csv"
-    file.write_text("pressure [MPa],distance [m],depth [mm],hardness [MPa],pressure error [MPa],hardness error [MPa],depth error [mm]\n"
-                    "10,500,0.5,5000,1,200,0.015\n", encoding="utf-8")
+    file.write_text("pressure [MPa],distance [m],depth [mm],hardness [MPa],pressure error [MPa],hardness error [MPa],"
+                    "depth error [mm]\n10,500,0.5,5000,1,200,0.015\n", encoding="utf-8")
     for law, exponent in (("pressure", 1.0), ("dissipation", 1.0), ("power", 2.0)):
         (k, u), = fit(read(file), law=law, exponent=exponent)[""]["rows"]
         assert u / k == pytest.approx(np.hypot(0.03, exponent * np.hypot(0.1, 0.04)), rel=1e-12)
-    file.write_text("force [N],friction [N],area [mm2],distance [m],depth [mm],hardness [MPa],force error [N],friction error [N],"
-                    "area error [mm2]\n1000,300,30,500,0.5,5000,100,12,0.9\n", encoding="utf-8")
+    file.write_text("force [N],friction [N],area [mm2],distance [m],depth [mm],hardness [MPa],force error [N],"
+                    "friction error [N],area error [mm2]\n1000,300,30,500,0.5,5000,100,12,0.9\n", encoding="utf-8")
     (_, u), (k, v) = (fit(read(file), law=law)[""]["rows"][0] for law in ("pressure", "dissipation"))
-    assert u / k == pytest.approx(np.hypot(0.1, 0.03), rel=1e-12) and v / k == pytest.approx(np.hypot(0.04, 0.03), rel=1e-12)
+    assert u / k == pytest.approx(np.hypot(0.1, 0.03), rel=1e-12)
+    assert v / k == pytest.approx(np.hypot(0.04, 0.03), rel=1e-12)
 
 
 def test_an_error_missing_in_a_row_is_said(tmp_path, capsys):
@@ -82,7 +83,8 @@ def test_own_steel_by_hardness_and_measured_friction(tmp_path):
     file = tmp_path / "mine.csv"
     lines = [f",{p},{p * 2.5 * 0.4},100,{1e3 * 4.0 * (p / 2000)**1.5 * 100},2000" for p in (5, 10, 20, 30)]
     file.write_text("\ufeffsteel,pressure [MPa],friction [N],distance [m],depth [mm],hardness [MPa],force [N]\n"
-                    + "\n".join(f"{line},{p * 2.5}" for line, p in zip(lines, (5, 10, 20, 30))) + "\n", encoding="utf-8")
+                    + "\n".join(f"{line},{p * 2.5}" for line, p in zip(lines, (5, 10, 20, 30))) + "\n",
+                    encoding="utf-8")
     one = fit(read(file), law="power", mu=0.4, exponent=None)[""]
     assert one["law"].k == pytest.approx(4.0, rel=1e-9) and one["exponent"][0] == pytest.approx(1.5, rel=1e-9)
 
@@ -109,7 +111,8 @@ def test_command_line_leaves_numbers_and_a_figure(tmp_path, capsys):
     ("steel,force [N],distance [m],depth [mm],temperature [K]\nMET71,1e6,1,1,400\n", "area = nothing"),
     ("pressure [Pa],distance [m],depth [mm],hardness [Pa],force error [N]\n1e6,1,1,5e9,3\n",
      "force error = 3 N: must be given with force"),
-    ("pressure [Pa],force [N],distance [m],depth [mm],hardness [Pa]\n1e6,0,1,1,5e9\n", "force = 0 N: must be greater than 0"),
+    ("pressure [Pa],force [N],distance [m],depth [mm],hardness [Pa]\n1e6,0,1,1,5e9\n",
+     "force = 0 N: must be greater than 0"),
     ("steel,pressure [Pa],depth [mm],temperature [K]\nMET71,1e6,1,400\n", "distance = nothing")])
 def test_bad_files_end_in_one_line(tmp_path, capsys, text, words):
     file = tmp_path / "bad.csv"
@@ -117,6 +120,14 @@ def test_bad_files_end_in_one_line(tmp_path, capsys, text, words):
     assert main([str(file)]) == 2
     said = capsys.readouterr().err
     assert said.startswith("error: ") and words in said and said.count("\n") == 1
+
+
+@pytest.mark.parametrize("option, words", [
+    (["--exponent", "2"], "exponent = 2: must be left out with wear_law = pressure"),
+    (["--exponent", "fit"], "exponent = fit: must be left out with wear_law = pressure"),
+    (["--modes", "1/1/1"], "modes = 1/1/1: must be left out with wear_law = pressure")])
+def test_options_of_another_law_are_refused(capsys, option, words):
+    assert main(option) == 2 and words in capsys.readouterr().err
 
 
 def test_a_file_that_is_not_there(capsys):
