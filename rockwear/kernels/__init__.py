@@ -1,0 +1,1 @@
+"""Physics without YADE: pure functions and small classes over arrays."""
