@@ -9,7 +9,6 @@ import platform
 import shlex
 import subprocess
 import sys
-from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -20,16 +19,6 @@ ROOT = Path(__file__).resolve().parents[1]
 MANIFEST = "provenance.json"
 
 
-@lru_cache(maxsize=1)
-def origin():
-    """{"command", "commit", "date", "versions": {program: version}} of this process; "unknown" where nothing tells."""
-    return {"command": shlex.join([Path(sys.orig_argv[0]).name, *sys.orig_argv[1:]]),
-            "commit": _said("git", "describe", "--always", "--dirty", "--exclude=*"),
-            "date": datetime.date.today().isoformat(),
-            "versions": {"rockwear": __version__, "yade": _said("yade", "--version").rpartition(" ")[2],
-                         "python": platform.python_version(), "numpy": np.__version__}}
-
-
 def _said(*command):
     try:
         done = subprocess.run(command, cwd=ROOT, capture_output=True, encoding="utf-8", stdin=subprocess.DEVNULL,
@@ -37,6 +26,14 @@ def _said(*command):
     except (OSError, subprocess.CalledProcessError):
         return "unknown"
     return done.stdout.strip()
+
+
+ORIGIN = {"command": shlex.join([Path(sys.orig_argv[0]).name, *sys.orig_argv[1:]]),
+          "commit": _said("git", "describe", "--always", "--dirty", "--exclude=*"),
+          "date": datetime.date.today().isoformat(),
+          "versions": {"rockwear": __version__, "yade": _said("yade", "--version").rpartition(" ")[2],
+                       "python": platform.python_version(), "numpy": np.__version__}}
+"""Of this process. Taken at the import, because the code that runs is that of the start."""
 
 
 def header(source):
@@ -53,7 +50,7 @@ def table(header, rows):
 
 def write_page(path, lines):
     """Write lines of Markdown below a line on where they come from. -> the text."""
-    text = "\n".join([header(origin()), "", *lines]).rstrip("\n") + "\n"
+    text = "\n".join([header(ORIGIN), "", *lines]).rstrip("\n") + "\n"
     Path(path).write_text(text, encoding="utf-8")
     return text
 
@@ -63,5 +60,5 @@ def record(*paths):
     for path in map(Path, paths):
         manifest = path.with_name(MANIFEST)
         entries = json.loads(manifest.read_text(encoding="utf-8")) if manifest.exists() else {}
-        entries[path.name] = origin()
+        entries[path.name] = ORIGIN
         manifest.write_text(json.dumps(entries, indent=1, sort_keys=True) + "\n", encoding="utf-8")
