@@ -1,26 +1,27 @@
-"""Thermal expansion of the rock's particles, and what it does to their bonds and contacts."""
+"""Thermal expansion of the rock's particles, and its effect on their bonds and contacts."""
 import numpy as np
 from yade import O
 
 from rockwear.engines.base import Engine
 
 RESOLUTION = 1e-12
-"""Relative change of a radius that is worth a visit: 1e-7 K at 1e-5 1/K, 1e-5 of the strength of a bond at most."""
+"""Least relative change of a radius that is applied: 1e-7 K at 1e-5 1/K, at most 1e-5 of the strength of a bond."""
 
 
 class Expansion(Engine):
-    """Radii r = r0 (1 + alpha (theta - theta0)) ([Rojek 2014, eq. 11]), for bodies 0..n-1.
+    """Radii r = r0 (1 + alpha (theta - theta0)) [Rojek 2014, eq. 11], for bodies 0..n-1.
 
-    A bond takes up expansion as it would a displacement. Its length at rest, |x_j - x_i| at bonding, grows in the
-    proportion of r_i + r_j. ([Rojek 2014, eq. 10] lets it grow by r_i + r_j and keeps the packing's gap g0, so that bonds with overlaps
-    and bonds with gaps grow unlike each other, and a packing that is heated evenly comes under stress of its own. Here
-    it does not; where discs touch the two are the same.) A broken bond keeps its length at rest, that is, the distance
-    at which it presses again. Other contacts see the radii. Masses stay: density falls. Bounding boxes follow when the
-    collider runs next; their margin, a twentieth of a radius, is a thousand times what the radii grow between.
+    Expansion acts on a bond like a displacement. Its length at rest, |x_j - x_i| at bonding, grows in proportion to
+    r_i + r_j. (In [Rojek 2014, eq. 10] it grows by the growth of r_i + r_j and keeps the packing's gap g0, so that bonds
+    with overlaps and bonds with gaps grow differently, and a packing under uniform heating has residual stresses. Here
+    it has none; where discs touch the two are the same.) A broken bond keeps its length at rest, that is, the distance
+    at which it presses again. Other contacts take the new radii. Masses are kept: the density falls. Bounding boxes
+    follow at the next run of the collider; their margin, a twentieth of a radius, is a thousand times what the radii
+    grow in the meantime.
 
-    coefficient: alpha, 1/K; rock: the specimen, with its cold radii and places; reference: theta0, K; temperature: a
-    function giving (n,) K; bonds: engines.bonds.Bonds; loose: a function giving the contacts that are no bonds.
-    `work` (J) is what the expansion has done against forces in bonds and contacts.
+    coefficient: alpha, 1/K; rock: the specimen, with its cold radii and positions; reference: theta0, K; temperature: a
+    function that gives (n,) K; bonds: engines.bonds.Bonds; loose: a function that gives the contacts that are no bonds.
+    `work` (J) is the work of the expansion against the forces in bonds and contacts.
     """
 
     name = "expansion"

@@ -160,10 +160,12 @@ def exchange(make):
         capacity = heat.network.capacity[2 + node]
         width = np.minimum(body.contact_areas[facets], (2 * 2e-3)**(body.positions.shape[1] - 1)).sum()
         decay = np.exp(-conductance * width * STEP * (1 / C_ROCK + 1 / capacity))
-        found[name] = {"gap": float(steel - rock), "exact": float(400.0 * decay), "mixture": float(C_ROCK * rock + capacity * steel),
+        found[name] = {"gap": float(steel - rock), "exact": float(400.0 * decay),
+                       "mixture": float(C_ROCK * rock + capacity * steel),
                        "whole": float(C_ROCK * 300.0 + capacity * 700.0)}
         power, touch, warmth = heat.averages()
-        found[name].update(touch=float(touch.sum()), touch_exact=float(conductance * width), rock_mean=float(warmth[node]))
+        found[name].update(touch=float(touch.sum()), touch_exact=float(conductance * width),
+                           rock_mean=float(warmth[node]))
     return found
 
 
