@@ -106,10 +106,14 @@ class FacetContact(ToolContact):
         found = [(real.get((one, rock)), real.get((other, rock))) for one, other, rock in self.notches]
         return [pair for pair in found if None not in pair]
 
-    def _add_slip(self, contact, before, after, slip):
+    def _sample(self, contact, elapsed):
+        # A duplicate has no force, and no contact time in which heat would pass.
         if not inactive(contact):
-            super()._add_slip(contact, before, after, slip)
-            self.in_yade_balance += slip * after
+            super()._sample(contact, elapsed)
+
+    def _add_slip(self, contact, before, after, slip):
+        super()._add_slip(contact, before, after, slip)
+        self.in_yade_balance += slip * after
 
     def _select(self, rock, group):
         """Make new duplicates among the contacts of a particle inactive, and others active that have no predecessor.
