@@ -1,0 +1,217 @@
+"""A cut, put together from parts: a rock, a tool assembly, a programme of motion, and the physics that it needs."""
+import numpy as np
+from yade import O
+
+from rockwear.engines.base import RunEnded
+from rockwear.engines.bonds import Bonds, Separation
+from rockwear.engines.damping import BackgroundDamping
+from rockwear.engines.energy_guard import EnergyGuard
+from rockwear.engines.path_follower import PathFollower
+from rockwear.engines.recorder import Recorder
+from rockwear.engines.shear_rotation import ShearRotation
+from rockwear.engines.velocity_increment import VelocityIncrement
+from rockwear.model.contact import PLANE
+from rockwear.scenes import yade_scene
+from rockwear.scenes.balances import StoredEnergy
+from rockwear.scenes.cut_output import CutOutput
+from rockwear.scenes.scene import Scene
+from rockwear.scenes.time_step import plane_steps, space_steps
+
+PATH_PERIOD = 100
+"""Steps N between the corners of a curved path, which chords leave by (v dt N)^2 / 8R: 23 nm at 5.7 m/s and 0.7 m."""
+SEPARATION_PERIOD = GUARD_PERIOD = 200
+"""Steps between looks for separated bonds, and at the energy."""
+
+
+class Cut(Scene):
+    """A rigid tool cuts rock.
+
+    rock: a specimen of model.rock; bond_law: of kernels.bond_laws, which also gives the stiffness and friction of contacts
+    in the rock; tool: a ToolAssembly; programme: a Programme; accuracy: scenes.accuracy.Accuracy; heat, expansion, gravity:
+    of scenes.physics, or None; background_damping: 1/s; time_scale: mechanical over physical rate; depth_of_cut: m, to
+    which depth the tool must reach to cut; notes: {name: (value, unit)} of further results; first_temperature: K of a tool
+    without heat.
+
+    In the plane the balances count per metre of thickness.
+    """
+
+    def __init__(self, *, rock, bond_law, tool, programme, accuracy, depth_of_cut, first_temperature, heat=None,
+                 expansion=None, gravity=None, background_damping=0.0, time_scale=1.0, notes=None):
+        self.rock, self.bond_law, self.tool, self.programme, self.accuracy = rock, bond_law, tool, programme, accuracy
+        self.heat_model, self.expansion_model, self.gravity = heat, expansion, gravity
+        self.background_damping, self.time_scale = background_damping, time_scale
+        self.depth_of_cut, self.first_temperature, self.notes = depth_of_cut, first_temperature, notes or {}
+        self.units = tool.units
+        self.in_plane = self.units is PLANE
+        # YADE's shear by full radii gains energy where spheres overlap by a tenth of their size.
+        self.ratcheting_free = self.in_plane
+        programme.attach(self)
+        if self.in_plane:
+            self.bonded_step, self.contact_step = plane_steps(rock, bond_law, tool.contact_law)
+        else:
+            self.bonded_step, self.contact_step = space_steps(rock, bond_law, tool.contact_law)
+        self.critical_step = min(self.bonded_step, self.contact_step)
+        self.time_step = accuracy.step(self.critical_step)
+        self._plan(programme.stages())
+        programme.planned()
+        self.energy = StoredEnergy(self.stored_energy)
+        self.output = CutOutput(self)
+
+    def foremost(self):
+        """x (m) in the tool's frame of the foremost of what is left of it below the rock's surface, -inf for nothing."""
+        return self.tool.foremost(below=self.depth_of_cut)
+
+    # ---- YADE
+
+    def build(self):
+        O.reset()
+        contact = self.tool.contact_law
+        yade_scene.put_rock_materials(mu=self.bond_law.mu, loose=self.tool.loose_material)
+        yade_scene.put_tool_material(mu=contact.mu, contact_damping=contact.damping)
+        yade_scene.put_rock(self.rock)
+        self.tool.put_loop(rock=self.bond_law, tool=contact, ratcheting_free=self.ratcheting_free)
+        self._make_engines()
+        yade_scene.make_bonds(self.rock, self.bonds)
+        self.tool.insert()
+        self._insert_engines()
+        self.programme.begin()
+        if self.heat:
+            self.heat.begin()
+            self.heat_model.check_period(self.heat, self.accuracy.heat_period)
+        self.energy.begin()
+        self.canonical()
+        if self.gravity:
+            self.gravity.switch_on()
+
+    def _make_engines(self):
+        rock, tool, accuracy = self.rock, self.tool, self.accuracy
+        self.bonds = Bonds(pairs=rock.pairs, law=self.bond_law, strength_factor=rock.strength_factor, clock=lambda: self.time)
+        increment = VelocityIncrement(masses=rock.masses, inertias=rock.inertias, radii=rock.radii, fixed=rock.fixed,
+                                      gravity=self.gravity.vector if self.gravity else None)
+        tool.make_engines(motion=self.programme.motion, increment=increment, wear_period=accuracy.wear_period,
+                          temperature=self._tool_temperature, on_removal=self._on_removal)
+        self.rock_friction = tool.rock_friction(self.bonds, increment, accuracy.rock_sampling_period)
+        self._make_heat()
+        self.damping = self._make_damping()
+        self.recorder = Recorder(self.output.history(), period=max(1, self.steps_in(accuracy.record_period)))
+        self.guard = EnergyGuard(work=lambda: tool.contact.work_done, floor=self._least_energy(), period=GUARD_PERIOD)
+        curved, bonded_in_space = self.programme.motion.angular_velocity, not self.in_plane and len(rock.pairs)
+        self._register(
+            ShearRotation(bonds=self.bonds, radii=rock.radii) if bonded_in_space else None,
+            self.bonds, tool.contact, self.rock_friction, Separation(self.bonds, period=SEPARATION_PERIOD),
+            PathFollower(bodies=tool.bodies, clock=self.programme.path_time, period=PATH_PERIOD) if curved else None,
+            tool.wear_engine, tool.profile, self.heat, self.expansion, self.damping, self.recorder, self.guard)
+
+    def _make_heat(self):
+        self.heat = self.expansion = None
+        if not self.heat_model:
+            return
+        period = max(1, self.steps_in(self.accuracy.heat_period))
+        common = dict(rock=self.rock, bonds=self.bonds, rock_friction=self.rock_friction, tool_contact=self.tool.contact)
+        self.heat = self.heat_model.engine(
+            **common, body=self.tool.thermal_body(), wear_acceleration=self.tool.wear.acceleration,
+            time_scale=self.programme.heat_time_scale, surface_period=self.accuracy.surface_period, period=period)
+        if self.expansion_model:
+            self.expansion = self.expansion_model.engine(**common, heat=self.heat, period=period)
+
+    def _make_damping(self):
+        rates = self.programme.damping_rates or [self.background_damping]
+        if not any(rates):
+            return None
+        return BackgroundDamping(rate=rates[0], bodies=range(self.rock.count), period=self.accuracy.damping_period)
+
+    def _least_energy(self):
+        """J that the run may hold whatever the tool's work: a heavy particle at five times the tool's speed, a fall by a
+        radius."""
+        rock = self.rock
+        fall = float(rock.masses.sum()) * self.gravity.g * float(rock.radii.max()) if self.gravity else 0.0
+        return 25 * float(rock.masses.max()) * self.programme.fastest()**2 + fall
+
+    def _connect(self):
+        super()._connect()
+        self.tool.bodies.connect()
+
+    def connect_again(self):
+        """The scene in O has been loaded."""
+        self._connect()
+        self.first_iteration = O.iter
+
+    def _tool_temperature(self):
+        return self.heat.temperature_of_pieces() if self.heat else np.full(self.tool.count, self.first_temperature)
+
+    def _on_removal(self, worn, loose):
+        if self.heat:
+            with self.programme.removal():
+                self.heat.remove(worn, loose)
+        if not self.tool.bodies.body_of:
+            # A simulation that blows up may wear the tool away before its guard comes by.
+            self.guard.act()
+            raise RunEnded(f"the tool is worn away at t = {self.time:g} s", True)
+
+    # ---- stages
+
+    @property
+    def step(self):
+        return self.programme.step
+
+    @property
+    def time(self):
+        return self.programme.time
+
+    def run_chunk(self):
+        if not self.programme.run():
+            super().run_chunk()
+
+    def canonical(self):
+        super().canonical()
+        self.tool.contact.look_around()
+
+    def end_stage(self, folder):
+        """Close the balances of the stage; the programme prepares the next one."""
+        self.programme.close_stage()
+        for engine in (self.tool.wear_engine, self.tool.profile, self.damping, self.heat):
+            if engine:
+                engine.act()
+        self.energy.close()
+        super().end_stage(folder)
+        self._set_damping()
+        self.programme.begin_stage(folder)
+        self.energy.begin()
+        if not self.finished and not self.programme.reaches_rock():
+            raise RunEnded(f"nothing of the tool reaches the rock any more at t = {self.time:g} s", True)
+        self.programme.stage_begun(folder)
+
+    def _set_damping(self):
+        rates = self.programme.damping_rates
+        if self.damping and rates:
+            self.damping.rate = rates[min(self.stage, len(rates) - 1)]
+
+    # ---- what a checkpoint holds
+
+    def state(self):
+        return {**super().state(), "energy": self.energy.state(), "bodies": self.tool.bodies.state(),
+                "programme": self.programme.state()}
+
+    def save(self, directory, folder):
+        super().save(directory, folder)
+        self.programme.save(directory, folder)
+
+    def restore(self, state, directory, folder):
+        self.programme.load(directory, folder)
+        super().restore(state, directory, folder)
+        self.programme.restore(state.get("programme", {}))
+        self.energy.restore(state["energy"])
+
+    def _restore_engines(self, state):
+        self.tool.bodies.restore(state["bodies"])
+        super()._restore_engines(state)
+        self._set_damping()
+
+    # ---- balances
+
+    def stored_energy(self):
+        found = super().stored_energy()
+        found["contact_elastic"] += self.tool.contact.elastic_energy()
+        if self.gravity:
+            found["potential"] = float(self.rock.masses @ yade_scene.rock_positions(self.rock)[:, 1]) * self.gravity.g
+        return found

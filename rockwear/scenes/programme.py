@@ -1,0 +1,299 @@
+"""Programmes of motion: what the tool does in which stage, and what becomes of the rock between stages."""
+import math
+import shutil
+from abc import ABC, abstractmethod
+from contextlib import nullcontext
+
+import numpy as np
+from yade import O
+
+from rockwear.engines.bonds import Crack
+from rockwear.kernels.rigid_motion import Straight
+
+
+class Programme(ABC):
+    """What a scene asks of a programme; `motion` (of kernels.rigid_motion) is the path of the tool.
+
+    The scene is a scenes.cut.Cut, given by `attach`. Its `stage` counts the stages that `stages` names.
+    """
+
+    damping_rates = None
+    """(stages,) 1/s of background damping by stage; None where it stays the same."""
+
+    def attach(self, scene):
+        """The scene whose programme this is."""
+        self.scene = scene
+
+    @abstractmethod
+    def stages(self):
+        """{name: s} of the stages."""
+
+    def planned(self):
+        """The scene has turned the stages into steps."""
+
+    def begin(self):
+        """The scene stands before its first step."""
+
+    # ---- the clock
+
+    @property
+    def step(self):
+        """Steps of the present stage that are done."""
+        return O.iter - self.scene.first_iteration
+
+    @property
+    def time(self):
+        """Simulated seconds of the process over all stages."""
+        return self.scene.clock + self.step * self.scene.time_step * self.scene.time_scale
+
+    def heat_time_scale(self):
+        """Seconds of the process, in which heat flows, in a second of the mechanics."""
+        return self.scene.time_scale
+
+    def fastest(self):
+        """Greatest speed of the tool, m/s of the mechanics."""
+        return float(np.linalg.norm(self.motion.velocity(0.0)))
+
+    def run(self):
+        """Run to the next canonical point; False where the mechanics do so."""
+        return False
+
+    # ---- between stages
+
+    def close_stage(self):
+        """The present stage ends."""
+
+    def begin_stage(self, folder):
+        """The next stage, which is the scene's by now, begins."""
+
+    def stage_begun(self, folder):
+        """The balances of the stage have begun."""
+
+    def removal(self):
+        """A context in which the heat of removed particles is taken out."""
+        return nullcontext()
+
+    def reaches_rock(self):
+        """Whether anything of the tool still meets the rock."""
+        return math.isfinite(self.scene.foremost())
+
+    # ---- what a checkpoint holds
+
+    def state(self):
+        """What must survive a restart."""
+        return {}
+
+    def restore(self, state):
+        """Take back what `state` gave."""
+
+    def save(self, directory, folder):
+        """Write files into `directory` of a checkpoint of the run in `folder`."""
+
+    def load(self, directory, folder):
+        """Take the files back."""
+
+    # ---- what the folder of a run shows
+
+    def cracks(self):
+        """Bonds that broke in rock that has been replaced since."""
+        return []
+
+    def log(self):
+        """{name: (value, unit)} of the history."""
+        return {}
+
+    def heat_log(self):
+        """{name: (value, unit)} of the history of a scene with heat."""
+        return {}
+
+    def model_arrays(self):
+        """{name: array} that stays the same."""
+        return {}
+
+    @abstractmethod
+    def results(self, columns):
+        """{name: (value, unit)}: times and forces, from the history's columns."""
+
+    def tables(self):
+        """{file: (header, rows)} of further tables."""
+        return {}
+
+
+class StartState:
+    """Rock and tool's bodies as the first stage left them, for stages that begin from there [Rojek 2003, 9.1]."""
+
+    FILE = "start_up.yade.gz"
+
+    def __init__(self, scene):
+        self.scene, self.kept, self.cracks = scene, {}, []
+
+    def keep(self, folder):
+        """Keep what is there now."""
+        scene = self.scene
+        scene.canonical()
+        O.save(str(folder / self.FILE))
+        self.kept = {"bonds": scene.bonds.state(), "bodies": scene.tool.bodies.state()}
+        if scene.heat:
+            self.kept["rock_temperature"] = scene.heat.network.temperature[:scene.rock.count].copy()
+
+    def put_back(self, folder):
+        """The rock as it was kept, and in it the tool as it is worn now."""
+        scene, bonds = self.scene, self.scene.bonds
+        released = bonds.energy_released
+        self.cracks += bonds.cracks[len(self.kept["bonds"]["cracks"]):]
+        O.load(str(folder / self.FILE))
+        bonds.restore(self.kept["bonds"])
+        bonds.energy_released = released
+        scene.tool.bodies.restore(self.kept["bodies"])
+        scene.connect_again()
+        scene.tool.insert_again()
+        if scene.heat:
+            scene.heat.replace_rock(self.kept["rock_temperature"])
+            scene.heat.find_surfaces()
+        scene.canonical()
+
+    def state(self):
+        """What must survive a restart."""
+        return {"kept": self.kept, "cracks": np.array(self.cracks, float).reshape(-1, len(Crack._fields))}
+
+    def restore(self, state):
+        """Take back what `state` gave."""
+        self.kept = state.get("kept", {})
+        self.cracks = [Crack(*row) for row in state["cracks"].tolist()]
+
+    def save(self, directory, folder):
+        """Copy the file into `directory` of a checkpoint of the run in `folder`."""
+        if self.kept:
+            shutil.copy(folder / self.FILE, directory)
+
+    def load(self, directory, folder):
+        """Copy it back."""
+        if (directory / self.FILE).exists():
+            shutil.copy(directory / self.FILE, folder)
+
+
+class Cycles(Programme):
+    """A start-up cut, then cycles, each in the rock that the start-up left, with the tool as it is worn [Rojek 2003, 9.1].
+
+    times: {stage: s}, the start-up first; velocity: m/s of the process; depth_of_cut: m; surface: height of the rock's
+    surface, m; approach: free way before the tool meets the rock, m; ahead: m below the surface where its foremost point
+    counts for that.
+    """
+
+    def __init__(self, *, times, velocity, depth_of_cut, surface, approach, ahead, time_scale=1.0):
+        self.times, self.velocity, self.depth_of_cut = times, velocity, depth_of_cut
+        self.surface, self.approach, self.ahead, self.time_scale = surface, approach, ahead, time_scale
+
+    def attach(self, scene):
+        super().attach(scene)
+        x = -self.approach - scene.tool.foremost(below=self.ahead)
+        self.motion = Straight(start=(x, self.surface - self.depth_of_cut), velocity=(self.velocity * self.time_scale, 0.0))
+        self.foremost_when_new = scene.foremost()
+        self.start = StartState(scene)
+
+    def stages(self):
+        return self.times
+
+    def planned(self):
+        self.approach_steps = np.zeros(len(self.scene.stages), int)
+        """Steps of each stage in which a worn tool comes to where the new one stood."""
+
+    @property
+    def working_time(self):
+        """Simulated seconds without those in which a worn tool came to where the new one stood."""
+        scene = self.scene
+        steps = self.approach_steps[:scene.stage].sum()
+        if not scene.finished:
+            steps += min(scene.step, self.approach_steps[scene.stage])
+        return scene.time - float(steps) * scene.time_step * scene.time_scale
+
+    def begin_stage(self, folder):
+        scene = self.scene
+        if scene.stage == 1:
+            self.start.keep(folder)
+        elif not scene.finished:
+            self.start.put_back(folder)
+        if not scene.finished:
+            self._add_approach()
+            if scene.tool.profile:
+                scene.tool.profile.begin_cycle(self._mark_of_shape())
+
+    def _mark_of_shape(self):
+        return self.scene.tool.mark_of_shape()
+
+    def _add_approach(self):
+        """Lengthen the stage by the way that a worn tool is behind a new one, so that each goes through the same rock."""
+        scene, behind = self.scene, self.foremost_when_new - self.scene.foremost()
+        if 0.0 < behind < math.inf:
+            name, steps = scene.stages[scene.stage]
+            self.approach_steps[scene.stage] = scene.steps_in(behind / self.velocity)
+            scene.stages[scene.stage] = name, steps + int(self.approach_steps[scene.stage])
+
+    def state(self):
+        steps = np.array([steps for _, steps in self.scene.stages])
+        return {"stage_steps": steps, "approach_steps": self.approach_steps, "start": self.start.state()}
+
+    def restore(self, state):
+        scene = self.scene
+        scene.stages = [(name, int(steps)) for (name, _), steps in zip(scene.stages, state["stage_steps"])]
+        self.approach_steps = state["approach_steps"].copy()
+        self.start.restore(state["start"])
+
+    def save(self, directory, folder):
+        self.start.save(directory, folder)
+
+    def load(self, directory, folder):
+        self.start.load(directory, folder)
+
+    def cracks(self):
+        return self.start.cracks
+
+    def log(self):
+        return {"working_time": (self.working_time, "s")}
+
+    def cut_area(self):
+        """Area (m2) of the rock that the tool has gone through."""
+        return self.depth_of_cut * self.velocity * self.working_time
+
+    def results(self, columns):
+        scene, area, working_time = self.scene, self.cut_area(), self.working_time
+        cutting, thrust = (columns.get(f"{name}_force", np.zeros(1)) for name in ("cutting", "thrust"))
+        # On its way to the rock a worn tool meets no force, and that way is no cut.
+        at_work, unit = scene.time / working_time if working_time else 1.0, scene.units.force
+        return {"working_time": (working_time, "s"), "mean_cutting_force": (at_work * float(cutting.mean()), unit),
+                "peak_cutting_force": (float(cutting.max()), unit),
+                "mean_thrust_force": (at_work * float(thrust.mean()), unit),
+                "specific_energy": (scene.tool.contact.work_done / area if area else 0.0, "J/m3")}
+
+
+class LowerAndCut(Programme):
+    """The tool is lowered into the rock and then drawn through it [Rojek 2003, ch. 13].
+
+    ways: [(stage, s, (2,) m/s of the tool)]; start: (2,) m, place of the tool's origin at first; damping_rates: (stages,)
+    1/s, or None.
+    """
+
+    def __init__(self, *, ways, start, damping_rates=None):
+        self.ways, self.damping_rates = ways, damping_rates
+        self.motion = Straight(start=start, velocity=ways[0][2])
+
+    def stages(self):
+        return {name: seconds for name, seconds, _ in self.ways}
+
+    def fastest(self):
+        return max(float(np.linalg.norm(velocity)) for _, _, velocity in self.ways)
+
+    def begin_stage(self, folder):
+        if not self.scene.finished:
+            self.scene.tool.bodies.go_on(self.ways[self.scene.stage][2])
+
+    def model_arrays(self):
+        return {"stage_names": np.array([name for name, _, _ in self.ways])}
+
+    def results(self, columns):
+        cut = columns["stage"] == len(self.ways) - 1 if columns else np.zeros(0, bool)
+        if not cut.any():
+            return {}
+        unit = self.scene.units.force
+        found = {f"mean_{name}": (float(columns[name][cut].mean()), unit) for name in ("cutting_force", "thrust_force")}
+        return {**found, "peak_cutting_force": (float(columns["cutting_force"][cut].max()), unit)}

@@ -1,0 +1,279 @@
+"""A rigid tool in a scene, of particles or of facets, in the plane or in space: bodies, contact, wear, shape."""
+from abc import ABC, abstractmethod
+
+import numpy as np
+from yade import FrictMat, FrictViscoMat
+
+from rockwear.engines.facet_contact import FacetContact
+from rockwear.engines.facet_wear import FacetWear
+from rockwear.engines.rock_friction import RockFriction, YadeFriction
+from rockwear.engines.tool_contact import ToolContact
+from rockwear.engines.wear import Wear
+from rockwear.engines.wear_profile import WearProfile
+from rockwear.kernels.checks import require
+from rockwear.kernels.wear_statistics import places
+from rockwear.model.contact import PLANE
+from rockwear.model.facet_tool import write_stl
+from rockwear.scenes import yade_scene
+from rockwear.scenes.tool_bodies import FacetBodies, SphereBodies, ToolBodies
+
+PROFILE_PERIOD = 10
+"""Visits of the wear between rows of its profile."""
+RECESSION = 0.1
+"""Recession over slip up to which a wear acceleration is trusted: friction was 10 % below that of a tool that keeps its
+shape at 0.16, 32 % at 1.1, 73 % at 3.6 (calibration/campaigns/two_tools.py, seed 1)."""
+
+
+class ToolAssembly(ABC):
+    """What a scene asks of a tool.
+
+    model: a tool of rockwear.model; outline: (k, 2) m, its section with the plane of the cut when new; contact_law:
+    model.contact.ContactLaw; wear: scenes.physics.ToolWear; units: PLANE or SPACE. `make_engines` makes `bodies`,
+    `contact`, `wear_engine` and `profile`.
+    """
+
+    piece = "a particle"
+    """What of the tool wears away in one."""
+    loose_material = FrictMat
+    """YADE's material of rock that is no longer bonded."""
+    put_loop = staticmethod(yade_scene.put_loop)
+
+    def __init__(self, *, model, outline, contact_law, wear, units, sampling_period=1):
+        self.model, self.outline, self.contact_law, self.wear, self.units = model, outline, contact_law, wear, units
+        self.sampling_period = sampling_period
+
+    @property
+    def count(self):
+        """Pieces of the tool."""
+        return self.model.count
+
+    def foremost(self, below):
+        """Largest x (m) in the tool's frame of what is left of it below a height (m), -inf for nothing."""
+        return self.model.foremost(below=below)
+
+    def make_engines(self, *, motion, increment, wear_period, temperature, on_removal):
+        """Make the tool's bodies and engines. motion: of kernels.rigid_motion; increment: VelocityIncrement of the rock;
+        temperature: a function giving (pieces,) K; on_removal(worn, loose): told of particles that have gone."""
+        self.bodies = self._make_bodies(motion)
+        self.contact = self._make_contact(increment)
+        self.wear_engine = self._make_wear(wear_period, temperature, on_removal)
+        self.profile = None
+        if self._shape_changes():
+            self.profile = WearProfile(wear=self.wear_engine, place=places(self.outline, self.model.positions[:, :2]),
+                                       period=PROFILE_PERIOD * wear_period)
+
+    @abstractmethod
+    def _make_bodies(self, motion):
+        """The tool's bodies in YADE."""
+
+    @abstractmethod
+    def _make_contact(self, increment):
+        """The engine of the contacts."""
+
+    @abstractmethod
+    def _make_wear(self, period, temperature, on_removal):
+        """The engine of the wear."""
+
+    def _shape_changes(self):
+        return self.wear.law.wears
+
+    def rock_friction(self, bonds, increment, period):
+        """The engine that sums up friction within the rock, whose sum in YADE may be one with the tool's."""
+        return RockFriction(bonds=bonds, motion=increment, period=period)
+
+    @abstractmethod
+    def insert(self):
+        """Put the new tool into YADE."""
+
+    @abstractmethod
+    def insert_again(self):
+        """Bring the tool that a loaded scene holds to its present shape."""
+
+    @abstractmethod
+    def mark_of_shape(self):
+        """A number that differs where the tool's shape does."""
+
+    @abstractmethod
+    def volume_balance(self):
+        """{entry: m3} of what the wear law wore and where it is."""
+
+    def mass_balance(self):
+        """{entry: kg}: the volume balance times the tool's density."""
+        density = self.model.density
+        return {"initial": self.model.area * density, **{name: value * density for name, value in self.volume_balance().items()}}
+
+    def friction_balance(self):
+        """{entry: J}: friction at the tool, and what of it has worn it."""
+        return {"tool": self.contact.friction,
+                "worn_by": self.wear_engine.work_used + float(self.contact.wearing_work.sum())}
+
+    # ---- what the folder of a run shows
+
+    @abstractmethod
+    def model_arrays(self):
+        """{name: array} that stays the same."""
+
+    @abstractmethod
+    def snapshot(self):
+        """{name: array} of now."""
+
+    @abstractmethod
+    def points(self):
+        """(places (n, d) m in the tool's frame, {field: (n,)}) for ParaView."""
+
+    @abstractmethod
+    def results(self):
+        """{name: (value, unit)}."""
+
+    @abstractmethod
+    def words(self):
+        """How far it is worn, in a few words."""
+
+    def warnings(self):
+        """Lines on what of its wear is not to be relied on."""
+        return self.wear_engine.warnings()
+
+    def write_shape(self, folder):
+        """Write the shape into the folder where another run can take it."""
+
+
+class ParticleAssembly(ToolAssembly):
+    """A tool of particles: a model.particle_tool.Tool, or LayeredTool in space. Only its surface particles are in YADE."""
+
+    def _make_bodies(self, motion):
+        return (ToolBodies if self.units is PLANE else SphereBodies)(self.model, motion)
+
+    def _make_contact(self, increment):
+        return ToolContact(tool=self.bodies, motion=increment, needs=self.wear.law.needs, sampling_period=self.sampling_period)
+
+    def _make_wear(self, period, temperature, on_removal):
+        return Wear(contact=self.contact, erosion=self.model.erosion, tool=self.bodies, law=self.wear.law,
+                    hardness=self.wear.hardness, temperature=temperature, on_removal=on_removal,
+                    volume_unit=self.units.volume, period=period)
+
+    def insert(self):
+        self.bodies.add(sorted(self.model.erosion.surface))
+
+    def insert_again(self):
+        erosion = self.model.erosion
+        self.bodies.erase([i for i in self.bodies.body_of if not erosion.alive[i]])
+        self.bodies.add([i for i in sorted(erosion.surface) if i not in self.bodies.body_of])
+
+    def mark_of_shape(self):
+        return float(np.count_nonzero(self.model.erosion.alive))
+
+    def volume_balance(self):
+        return self.model.erosion.volume_balance()
+
+    def model_arrays(self):
+        tool = self.model
+        return {"tool_radii": tool.radii, "tool_positions": tool.positions, "tool_volumes": tool.volumes,
+                "tool_fixed": tool.fixed}
+
+    def snapshot(self):
+        erosion = self.model.erosion
+        return {"alive": erosion.alive, "worn_depth": erosion.stored / erosion.areas,
+                "surface": np.array(sorted(erosion.surface), int)}
+
+    def points(self):
+        alive = self.model.erosion.alive
+        return self.model.positions[alive], {"diameter": 2 * self.model.radii[alive],
+                                             "worn_depth": self.snapshot()["worn_depth"][alive]}
+
+    def results(self):
+        erosion, unit = self.model.erosion, self.units.volume
+        found = {"mass_lost": (erosion.mass_fraction_lost, "-"), "worn_volume": (erosion.archard_volume, unit),
+                 "particles_removed": (int(np.sum(~erosion.alive)), "-"), "dropped_volume": (erosion.lost_with_pieces, unit),
+                 "tool_particles": (self.model.count, "-")}
+        if self.units is not PLANE:
+            found["maximum_wear_depth"] = float((erosion.worn / erosion.areas).max()), "m"
+        return found
+
+    def words(self):
+        return f"{100 * self.model.erosion.mass_fraction_lost:.2f} % of the tool worn"
+
+
+class FacetAssembly(ToolAssembly):
+    """A tool of facets, a model.facet_tool.FacetTool: segments in the plane, triangles in space; its vertices move with the
+    wear unless reshape is False.
+
+    work_fraction: part of the friction work that wears the tool.
+    """
+
+    piece = "a layer as deep as its facet"
+    loose_material = FrictViscoMat
+    put_loop = staticmethod(yade_scene.put_loop_with_facets)
+
+    def __init__(self, *, work_fraction=1.0, reshape=True, **common):
+        super().__init__(**common)
+        require(self.sampling_period == 1, "sampling_period", self.sampling_period, "1 for a tool of facets", "steps")
+        self.work_fraction, self.reshape = work_fraction, reshape
+
+    def _make_bodies(self, motion):
+        return FacetBodies(self.model, motion)
+
+    def _make_contact(self, increment):
+        return FacetContact(tool=self.bodies, motion=increment, needs=self.wear.law.needs,
+                            neighbours=self.model.boundary.neighbours())
+
+    def _make_wear(self, period, temperature, on_removal):
+        return FacetWear(contact=self.contact, boundary=self.model.boundary, tool=self.bodies, law=self.wear.law,
+                         hardness=self.wear.hardness, temperature=temperature, work_fraction=self.work_fraction,
+                         reshape=self.reshape, wear_acceleration=self.wear.acceleration, volume_unit=self.units.volume,
+                         period=period)
+
+    def _shape_changes(self):
+        return super()._shape_changes() and self.reshape
+
+    def rock_friction(self, bonds, increment, period):
+        if len(bonds.pairs):
+            return super().rock_friction(bonds, increment, period)
+        return YadeFriction(contact=self.contact, bonds=bonds, motion=increment, period=None)
+
+    def insert(self):
+        self.bodies.add(range(self.model.count))
+
+    def insert_again(self):
+        self.bodies.reshape()
+
+    def mark_of_shape(self):
+        return self.model.boundary.volume
+
+    def volume_balance(self):
+        balance, worn = self.model.boundary.volume_balance(), self.wear_engine.volume
+        return balance if self.reshape else {**balance, "archard": worn, "shape_kept": worn}
+
+    def model_arrays(self):
+        tool = self.model
+        return {"tool_vertices": tool.first, "tool_facets": tool.first_facets, "tool_fixed": tool.boundary.fixed}
+
+    def snapshot(self):
+        boundary = self.model.boundary
+        return {"tool_vertices": boundary.vertices, "tool_facets": boundary.facets, "worn_volume": self.wear_engine.worn}
+
+    def points(self):
+        return self.model.boundary.vertices, {"worn_depth": self.model.depth_below}
+
+    def results(self):
+        # Where the shape is kept, what each facet would have gone back.
+        depth = self.model.worn_depth if self.reshape else self.wear_engine.worn / self.model.areas
+        found = {**self.wear_engine.log(), "broken_off": (self.model.boundary.broken_off, self.units.volume),
+                 "facets": (self.model.count, "-"), "maximum_wear_depth": (float(depth.max()), "m")}
+        return {**found, "recession_per_slip": (self.wear_engine.recession, "-")} if self.reshape else found
+
+    def words(self):
+        return f"{100 * self.wear_engine.log()['mass_lost'][0]:.2f} % of the tool worn"
+
+    def warnings(self):
+        recession, found = self.wear_engine.recession, super().warnings()
+        if not self.reshape or not recession > RECESSION:
+            return found
+        return [*found,
+                f"the face recedes by {recession:.2g} of the way that rock slides on it, away from what presses there: less "
+                f"wears than the same work at a lower wear acceleration would. Use wear_acceleration = "
+                f"{self.wear.acceleration * RECESSION / recession:.2g} at most instead of {self.wear.acceleration:g}, and run "
+                "that much longer"]
+
+    def write_shape(self, folder):
+        if self.units is not PLANE and self._shape_changes():
+            write_stl(folder / "tool.stl", self.model.boundary.vertices, self.model.boundary.facets)
