@@ -10,11 +10,13 @@ times as deep as M's, so that M's own 5e-6 (--wear_coefficient 5e-7) takes the t
 import runpy
 import sys
 
-runpy.run_path(sys.argv[0].replace("cutting_3d_removal.py", "find_rockwear.py"))
+runpy.run_path(sys.argv[0].rpartition("cutting_3d_removal.py")[0] + "find_rockwear.py")
 
-from rockwear.run import main as run
-from rockwear.scenes.cutting3d import OF_PARTICLES, ParticleCutting3D, parameters
+from rockwear.run.main import main
+from rockwear.scenes import cutting_3d
 
-run.main("cutting_3d_removal", parameters(
-    *OF_PARTICLES, velocity=0.4, lowering_velocity=0.4, wear_coefficient=0.1 * 5e-8, removal="depth", wear_period=2,
-    snapshot_period=0.02, record_period=1e-3), ParticleCutting3D)
+REMOVAL = cutting_3d.groups(
+    velocity=0.4, lowering_velocity=0.4, wear_coefficient=0.1 * 5e-8, removal="depth", wear_period=2, snapshot_period=0.02,
+    record_period=1e-3)
+
+main("cutting_3d_removal", REMOVAL, cutting_3d.make)

@@ -10,10 +10,9 @@ cutting_3d_wear.py, cutting_3d_removal.py.
 import runpy
 import sys
 
-runpy.run_path(sys.argv[0].replace("cutting_3d_triangles.py", "find_rockwear.py"))
+runpy.run_path(sys.argv[0].rpartition("cutting_3d_triangles.py")[0] + "find_rockwear.py")
 
-from rockwear.run import main as run
-from rockwear.scenes.cutting3d import OF_TRIANGLES, TriangleCutting3D, parameters
+from rockwear.run.main import main
+from rockwear.scenes import cutting_3d
 
-run.main("cutting_3d_triangles", parameters(
-    *OF_TRIANGLES, without={"removal"}, lowering_velocity=0.4, cut_time=1.5), TriangleCutting3D)
+main("cutting_3d_triangles", cutting_3d.groups(tool="triangles", lowering_velocity=0.4, cut_time=1.5), cutting_3d.make)

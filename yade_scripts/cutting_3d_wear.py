@@ -9,11 +9,12 @@ here all of it is of particles (28,576 with --full), since only its surface take
 import runpy
 import sys
 
-runpy.run_path(sys.argv[0].replace("cutting_3d_wear.py", "find_rockwear.py"))
+runpy.run_path(sys.argv[0].rpartition("cutting_3d_wear.py")[0] + "find_rockwear.py")
 
-from rockwear.run import main as run
-from rockwear.scenes.cutting3d import OF_PARTICLES, ParticleCutting3D, parameters
+from rockwear.run.main import main
+from rockwear.scenes import cutting_3d
 
-run.main("cutting_3d_wear", parameters(
-    *OF_PARTICLES, velocity=0.4, lowering_velocity=0.4, wear_coefficient=0.1 * 5e-9, snapshot_period=0.02,
-    record_period=1e-3), ParticleCutting3D)
+WEAR = cutting_3d.groups(
+    velocity=0.4, lowering_velocity=0.4, wear_coefficient=0.1 * 5e-9, snapshot_period=0.02, record_period=1e-3)
+
+main("cutting_3d_wear", WEAR, cutting_3d.make)

@@ -9,14 +9,14 @@ k / mu = 5e-9 and H = 1 Pa: a test of the algorithm, no steel.
 import runpy
 import sys
 
-runpy.run_path(sys.argv[0].replace("cutting_particles.py", "find_rockwear.py"))
+runpy.run_path(sys.argv[0].rpartition("cutting_particles.py")[0] + "find_rockwear.py")
 
-from rockwear.run import main as run
-from rockwear.scenes.cutting import Cutting, parameters
+from rockwear.run.main import main
+from rockwear.scenes import cutting
 
-TOOL = parameters(
+TOOL = cutting.groups(
     tool_radius_min=0.5e-3, tool_radius_max=0.5e-3, tool_kn=20e9, tool_kt=20e9, tool_mu=0.839, velocity=1.0,
     start_up=0.04, cycles=0, removal="depth", wear_coefficient=0.839 * 5e-9, hardness=1.0, wear_acceleration=1.0, heat=False,
     record_period=1e-4)
 
-run.main("cutting_particles", TOOL, Cutting)
+main("cutting_particles", TOOL, cutting.make)

@@ -11,11 +11,13 @@ fifty times as fast (shorter ones meet a single chip), and --velocity 0.04 --sta
 import runpy
 import sys
 
-runpy.run_path(sys.argv[0].replace("cutting_segments.py", "find_rockwear.py"))
+runpy.run_path(sys.argv[0].rpartition("cutting_segments.py")[0] + "find_rockwear.py")
 
-from rockwear.run import main as run
-from rockwear.scenes.facet_cutting import FacetCutting, parameters
+from rockwear.run.main import main
+from rockwear.scenes import cutting
 
-run.main("cutting_segments", parameters(
-    tool_kn=20e9, tool_kt=20e9, tool_mu=0.839, velocity=2.0, start_up=0.02, cycles=0, hardness=1.0, wear_coefficient=0.839,
-    wear_acceleration=1.0, reshape=False), FacetCutting)
+SEGMENTS = cutting.groups(
+    tool="segments", reshape=False, heat=False, tool_kn=20e9, tool_kt=20e9, tool_mu=0.839, velocity=2.0, start_up=0.02,
+    cycles=0, hardness=1.0, wear_coefficient=0.839, wear_acceleration=1.0)
+
+main("cutting_segments", SEGMENTS, cutting.make)

@@ -10,15 +10,15 @@ every wave in the rock; heat has its full second. (--time_scale 1 is M's own, in
 import runpy
 import sys
 
-runpy.run_path(sys.argv[0].replace("cutting_thermal.py", "find_rockwear.py"))
+runpy.run_path(sys.argv[0].rpartition("cutting_thermal.py")[0] + "find_rockwear.py")
 
-from rockwear.run import main as run
-from rockwear.scenes.cutting import Cutting, parameters
+from rockwear.run.main import main
+from rockwear.scenes import cutting
 
-THERMAL = parameters(
+THERMAL = cutting.groups(
     rock_specific_heat=3000.0, rock_conductivity=0.1, tool_radius_min=0.5e-3, tool_radius_max=0.5e-3,
     tool_kn=20e9, tool_kt=20e9, tool_mu=0.839, tooth_height=0.078, tooth_width=0.055, velocity=0.04, time_scale=100.0,
     start_up=1.0, cycles=0, hardness=100.0, wear_coefficient=0.839e-10, wear_acceleration=1.0, heat_sharing="equal",
     heat_period=0.01, surface_period=0.05, record_period=2e-3)
 
-run.main("cutting_thermal", THERMAL, Cutting)
+main("cutting_thermal", THERMAL, cutting.make)

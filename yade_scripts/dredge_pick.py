@@ -16,9 +16,9 @@ minute or two.
 import runpy
 import sys
 
-runpy.run_path(sys.argv[0].replace("dredge_pick.py", "find_rockwear.py"))
+runpy.run_path(sys.argv[0].rpartition("dredge_pick.py")[0] + "find_rockwear.py")
 
-from rockwear.run import main as run
-from rockwear.scenes.dredging import Dredging, dredging_parameters
+from rockwear.run.main import main
+from rockwear.scenes import dredging
 
-run.main("dredge_pick", dredging_parameters("--full" in sys.argv), Dredging)
+main("dredge_pick", dredging.groups(full="--full" in sys.argv), dredging.make)

@@ -9,11 +9,11 @@ box, tooth and depth of cut in a figure only, and gives no density: they are our
 import runpy
 import sys
 
-runpy.run_path(sys.argv[0].replace("granular_3d.py", "find_rockwear.py"))
+runpy.run_path(sys.argv[0].rpartition("granular_3d.py")[0] + "find_rockwear.py")
 
-from rockwear.run import main as run
-from rockwear.scenes.cutting3d import LOOSE, OF_BONDS, OF_TRIANGLES, LooseCutting3D, parameters
+from rockwear.run.main import main
+from rockwear.scenes import cutting_3d
 
-run.main("granular_3d", parameters(
-    *OF_TRIANGLES, *LOOSE, without={"removal", *OF_BONDS}, porosity=0.42, mu=0.1, start=0.2, background_damping=5.0),
-    LooseCutting3D)
+FILL = cutting_3d.loose_groups(tool="triangles", porosity=0.42, start=0.2, background_damping=5.0)
+
+main("granular_3d", FILL, cutting_3d.make_loose)

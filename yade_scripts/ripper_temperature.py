@@ -13,14 +13,14 @@ friction heat equally. M shows the tooth in figures only: its shape and the dept
 import runpy
 import sys
 
-runpy.run_path(sys.argv[0].replace("ripper_temperature.py", "find_rockwear.py"))
+runpy.run_path(sys.argv[0].rpartition("ripper_temperature.py")[0] + "find_rockwear.py")
 
-from rockwear.run import main as run
-from rockwear.scenes.temperatures import Temperatures, temperature_parameters
+from rockwear.run.main import main
+from rockwear.scenes import passes
 
-RIPPER = temperature_parameters(
+RIPPER = passes.groups(
     kn=90e9, kt=90e9, tool_kn=20e9, tool_kt=20e9, tool_radius_max=0.6e-3, heat_sharing="equal",
     rake=25.0, clearance=12.0, tooth_height=0.085, tooth_width=0.06, tip_radius=5e-3, depth_of_cut=0.015,
     start_up=1e-4, cycle_time=0.005)
 
-run.main("ripper_temperature", RIPPER, Temperatures)
+main("ripper_temperature", RIPPER, passes.make)

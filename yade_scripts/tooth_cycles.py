@@ -8,10 +8,9 @@ figure only and gives no depth of cut, air gap or background damping: these are 
 import runpy
 import sys
 
-runpy.run_path(sys.argv[0].replace("tooth_cycles.py", "find_rockwear.py"))
+runpy.run_path(sys.argv[0].rpartition("tooth_cycles.py")[0] + "find_rockwear.py")
 
-from rockwear.run import main as run
-from rockwear.scenes.cutting import PARAMETERS
-from rockwear.scenes.facet_cutting import OF_FACETS, TOOL, cut
+from rockwear.run.main import main
+from rockwear.scenes import cutting
 
-run.main("tooth_cycles", [*PARAMETERS, TOOL, *OF_FACETS], cut)
+main("tooth_cycles", cutting.groups(), cutting.make)

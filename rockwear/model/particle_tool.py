@@ -1,13 +1,12 @@
 """The tool: a parametric or given outline filled with particles, rigid, with a surface that meets the rock."""
-from functools import cached_property
-
 import numpy as np
 from scipy.spatial import cKDTree
 
-from rockwear.kernels import polygon as outline, packing
+from rockwear.kernels import packing
+from rockwear.kernels import polygon as outline
 from rockwear.kernels.voronoi import cells
 from rockwear.kernels.checks import positive, require
-from rockwear.kernels.conduction import calibrated_conductance
+from rockwear.kernels.conduction import calibrated_conductance, paths
 from rockwear.kernels.erosion import Erosion
 from rockwear.model.cache import cached
 
@@ -28,7 +27,20 @@ def neighbours(positions, radii):
 
 
 class ParticleTool:
-    """What all tools of particles have: positions (n, 2 or 3) m, radii (n,) m, and their erosion (kernels.erosion)."""
+    """A rigid tool of particles that wear away.
+
+    vertices: (k, 2) m, its outline; positions: (n, 2 or 3) m; radii: (n,) m; area: m2 of the outline, in space m3 of the
+    volume; volumes: (n,) m3, the part that each particle stands for; density: kg/m3; fixed: (n,) bool, particles that the
+    shank holds; surface: (n,) bool, those open to wear at first; pairs: (m, 2), neighbours that cover one another; removal
+    and thickness: of kernels.erosion.
+    """
+
+    def __init__(self, *, vertices, positions, radii, area, volumes, density, fixed, surface, pairs, removal, thickness=1.0):
+        self.vertices, self.positions, self.radii, self.area = vertices, positions, radii, area
+        self.volumes, self.density, self.fixed, self.count = volumes, density, fixed, len(radii)
+        self.masses = density * volumes
+        self.erosion = Erosion(radii=radii, volumes=volumes, pairs=pairs, thickness=thickness, rule=removal,
+                               surface=np.flatnonzero(surface & ~fixed), fixed=np.flatnonzero(fixed))
 
     def foremost(self, below):
         """Largest x reached by particles with any part below the height `below` (both m, in the tool's own frame), as long
@@ -37,62 +49,57 @@ class ParticleTool:
         return float((self.positions[low, 0] + self.radii[low]).max(initial=-np.inf))
 
 
+def fill(vertices, *, radius_min, radius_max, seed):
+    """{"positions": (n, 2) m, "radii": (n,) m} of a packing that fills a polygon (k, 2) m; kept in the cache."""
+    def make():
+        filled = packing.pack(polygon=vertices, radius_min=radius_min, radius_max=radius_max, porosity=POROSITY, seed=seed)
+        return {"positions": filled.positions, "radii": filled.radii}
+
+    return cached(make, fill=np.asarray(vertices).tolist(), radius_min=radius_min, radius_max=radius_max, seed=seed,
+                  porosity=POROSITY)
+
+
+def fitted_conductance(*, radius_min, radius_max, seed, conductivity):
+    """W/K, one conductance for every pair of `neighbours`, fitted on a square of the same packing as `fill` has: the outline
+    itself may be any shape. conductivity: W/m K."""
+    def make():
+        side = 50 * radius_max
+        square = packing.pack(box=(side, side), radius_min=radius_min, radius_max=radius_max, porosity=POROSITY, seed=seed)
+        return {"conductance": calibrated_conductance(positions=square.positions, conductivity=conductivity, conductance=1.0,
+                                                      edges=neighbours(square.positions, square.radii))[:1]}
+
+    return float(cached(make, fit=[radius_min, radius_max, seed, conductivity], porosity=POROSITY, gap=NEIGHBOUR_GAP,
+                        nearest=NEAREST)["conductance"][0])
+
+
 class Tool(ParticleTool):
     """Particles that fill an outline (k, 2) m, each standing for its part of the outline's area times 1 m.
 
-    radius_min, radius_max: m; removal: "volume" or "depth" (kernels.erosion); conductivity: W/m K; density: kg/m3,
-    specific_heat: J/kg K. `fixed` marks particles at the top and the back, where the shank holds the tool: they are
-    no surface. Everything else whose cell reaches the outline is surface, and a particle that goes uncovers those whose cells
-    have a face with its own: by their gaps some across a pore would stay out of contact, and rock would come to lie in them.
+    radius_min, radius_max: m; removal: "volume", "depth" or "none" (kernels.erosion); density: kg/m3 of the outline's area,
+    which particles carry through their share of it. The shank fixes particles at the top and the back (or at the "top"
+    alone): they are no surface. `cells` (kernels.voronoi.Cells) are the parts of the outline. Every other particle whose Voronoi cell reaches the outline is a surface particle, and a
+    particle that goes uncovers those whose cells have a face with its own: by their gaps some across a pore would stay out
+    of contact, and rock would come to lie in them.
     """
 
-    def __init__(self, *, vertices, radius_min, radius_max, seed, removal, material):
+    def __init__(self, *, vertices, radius_min, radius_max, seed, removal, density, shank="top and back"):
         positive("tool_radius_min", radius_min, "m")
-        self.vertices = np.asarray(vertices, float)
-        self.area = outline.area(self.vertices)
-        stored = cached(lambda: self._fill(radius_min, radius_max, seed, material.conductivity),
-                        polygon=self.vertices.tolist(), radius_min=radius_min, radius_max=radius_max, seed=seed,
-                        porosity=POROSITY, gap=NEIGHBOUR_GAP, nearest=NEAREST, conductivity=material.conductivity)
-        self.positions, self.radii, self.pairs = stored["positions"], stored["radii"], stored["pairs"]
-        self.conductance = float(stored["conductance"])
-        self.count = len(self.radii)
-        self.volumes = self.area * self.radii**2 / np.sum(self.radii**2)
-        self.material = material
-        self.fixed = self._fixed()
-        surface = np.flatnonzero(self.cells.at_walls & ~self.fixed)
-        self.erosion = Erosion(radii=self.radii, volumes=self.volumes, pairs=self.cells.edges, surface=surface,
-                               fixed=np.flatnonzero(self.fixed), rule=removal)
+        vertices, area = np.asarray(vertices, float), outline.area(vertices)
+        self._packing = dict(radius_min=radius_min, radius_max=radius_max, seed=seed)
+        filled = fill(vertices, **self._packing)
+        positions, radii = filled["positions"], filled["radii"]
+        self.cells = cells(positions, polygon=vertices)
+        fixed = positions[:, 1] > vertices[:, 1].max() - 1.5 * radii
+        if shank == "top and back":
+            fixed |= positions[:, 0] < vertices[:, 0].min() + 1.5 * radii
+        super().__init__(vertices=vertices, positions=positions, radii=radii, area=area,
+                         volumes=area * radii**2 / np.sum(radii**2), density=density, fixed=fixed,
+                         surface=self.cells.at_walls, pairs=self.cells.edges, removal=removal)
 
-    def _fill(self, radius_min, radius_max, seed, conductivity):
-        filled = packing.pack(polygon=self.vertices, radius_min=radius_min, radius_max=radius_max, porosity=POROSITY,
-                              seed=seed)
-        # One conductance for every pair, fitted on a square of the same packing: the outline itself may be any shape.
-        side = 50 * radius_max
-        square = packing.pack(box=(side, side), radius_min=radius_min, radius_max=radius_max, porosity=POROSITY, seed=seed)
-        fitted = calibrated_conductance(positions=square.positions, conductivity=conductivity, conductance=1.0,
-                                        edges=neighbours(square.positions, square.radii))
-        return {"positions": filled.positions, "radii": filled.radii, "conductance": fitted[0],
-                "pairs": neighbours(filled.positions, filled.radii)}
-
-    def _fixed(self):
-        x, y = self.positions.T
-        top, back = self.vertices[:, 1].max(), self.vertices[:, 0].min()
-        return (y > top - 1.5 * self.radii) | (x < back + 1.5 * self.radii)
-
-    @cached_property
-    def cells(self):
-        """kernels.cells.Cells: the part of the outline that each particle stands for."""
-        return cells(self.positions, polygon=self.vertices)
-
-    @property
-    def density(self):
-        """kg/m3 of the outline's area; particles carry it through their share of that area."""
-        return self.material.density
-
-    @property
-    def masses(self):
-        """(m,) kg, the mass each particle stands for; they add up to the outline's."""
-        return self.material.density * self.volumes
+    def paths(self, model, conductivity):
+        """Pairs (m, 2) of particles that exchange heat and their conductances (m,) W/K; model: of conduction.PATHS."""
+        return paths(model, conductivity, pairs=neighbours(self.positions, self.radii), cells=lambda: self.cells,
+                     fitted=lambda: fitted_conductance(**self._packing, conductivity=conductivity))
 
 
 class LayeredTool(ParticleTool):
@@ -106,34 +113,26 @@ class LayeredTool(ParticleTool):
 
     def __init__(self, *, vertices, radius, breadth, seed, removal, density):
         positive("tool_radius", radius, "m")
-        self.vertices, self.density = np.asarray(vertices, float), density
+        vertices = np.asarray(vertices, float)
         layers = int(positive("breadth", breadth, "m") / (2 * radius) + 1e-9)
         require(layers > 1, "breadth", breadth, f"at least two particles, {4 * radius:g}", "m")
-        stored = cached(lambda: self._fill(radius, seed), section=self.vertices.tolist(), radius=radius, seed=seed,
-                        porosity=POROSITY)
-        self.breadth = 2 * radius * layers
-        self._stack(stored["positions"], layers, float(stored["radii"][0]))
-        self.area = outline.area(self.vertices) * self.breadth
-        self.volumes = np.full(self.count, self.area / self.count)
-        self.masses = density * self.volumes
-        number, one = np.arange(self.count), len(stored["radii"])
-        section = cells(stored["positions"], polygon=self.vertices)
-        pairs = np.vstack([*(section.edges + one * layer for layer in range(layers)),
+        layer = fill(vertices, radius_min=radius, radius_max=radius, seed=seed)["positions"]
+        self.breadth, self.layers, self.section = 2 * radius * layers, layers, cells(layer, polygon=vertices)
+        number, one = np.arange(layers * len(layer)), len(layer)
+        pairs = np.vstack([*(self.section.edges + one * k for k in range(layers)),
                            np.column_stack([number[:-one], number[one:]])])
-        self.fixed = self.positions[:, 1] > self.vertices[:, 1].max() - 1.5 * self.radii
-        outermost = (number < one) | (number >= self.count - one) | np.tile(section.at_walls, layers)
-        self.erosion = Erosion(radii=self.radii, volumes=self.volumes, pairs=pairs, thickness=2 * self.radii,
-                               surface=np.flatnonzero(outermost & ~self.fixed), fixed=np.flatnonzero(self.fixed),
-                               rule=removal)
+        outermost = (number < one) | (number >= len(number) - one) | np.tile(self.section.at_walls, layers)
+        positions, radii = _stack(layer, layers, radius), np.full(len(number), float(radius))
+        area = outline.area(vertices) * self.breadth
+        super().__init__(vertices=vertices, positions=positions, radii=radii, area=area,
+                         volumes=np.full(len(number), area / len(number)), density=density,
+                         fixed=positions[:, 1] > vertices[:, 1].max() - 1.5 * radii, surface=outermost, pairs=pairs,
+                         removal=removal, thickness=2 * radii)
 
-    def _fill(self, radius, seed):
-        filled = packing.pack(polygon=self.vertices, radius_min=radius, radius_max=radius, porosity=POROSITY, seed=seed)
-        return {"positions": filled.positions, "radii": filled.radii}
 
-    def _stack(self, places, layers, radius):
-        z = 2 * radius * (np.arange(layers) - 0.5 * (layers - 1))
-        self.positions = np.column_stack([np.tile(places, (layers, 1)), np.repeat(z, len(places))])
-        self.count = len(self.positions)
-        # YADE's collider finds particles with equal coordinates in one order as a run goes on, in another in a resumed one.
-        self.positions += 1e-6 * radius * np.random.default_rng(0).uniform(-1, 1, self.positions.shape)
-        self.radii = np.full(self.count, radius)
+def _stack(places, layers, radius):
+    """(n, 3) m: layers of a packing (m, 2), a diameter apart about z = 0."""
+    z = 2 * radius * (np.arange(layers) - 0.5 * (layers - 1))
+    positions = np.column_stack([np.tile(places, (layers, 1)), np.repeat(z, len(places))])
+    # YADE's collider finds particles with equal coordinates in one order as a run goes on, in another in a resumed one.
+    return positions + 1e-6 * radius * np.random.default_rng(0).uniform(-1, 1, positions.shape)

@@ -1,14 +1,15 @@
-"""Specimens of bonded rock: packing (kept in a cache), support, bonds, and the particles in YADE."""
+"""Rock: assemblies of bonded discs or spheres, their packing kept in a cache."""
 import math
-import numpy as np
-
 from functools import cached_property
 
+import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
-from rockwear.kernels import packing, polygon as outline
+from rockwear.kernels import packing
+from rockwear.kernels import polygon as outline
 from rockwear.kernels.checks import ParameterError, not_negative, positive, require, within
+from rockwear.kernels.conduction import calibrated_conductance, paths
 from rockwear.kernels.voronoi import cells
 from rockwear.model.cache import cached
 
@@ -40,13 +41,84 @@ def pack_uniform(box, *, radius_min, radius_max, **common):
     return packing.tile(part, repeats)
 
 
-class Specimen:
+class Assembly:
+    """Particles of thickness 1 m in the plane, or spheres in space, in a box, and the pairs of them that are bonded.
+
+    positions: (n, 2 or 3) m; radii: (n,) m; width, height (and depth): m of the box; density: kg/m3 of the bulk; pairs:
+    (m, 2), i < j; strength_factor: (m,), a bond is so many times as strong as the bond law says. Particles carry the mass of
+    the pores, bulk density over solid fraction [Rojek 2014, eq. 63]. `fixed` (n,) bool: particles that do not move.
+    """
+
+    def __init__(self, *, positions, radii, width, height, density, pairs, strength_factor=None, depth=None):
+        self.positions, self.radii, self.density = np.asarray(positions, float), radii, density
+        self.width, self.height, self.depth, self.count = width, height, depth, len(radii)
+        self.pairs = pairs
+        self.strength_factor = np.ones(len(pairs)) if strength_factor is None else strength_factor
+        if depth is None:
+            self.porosity = 1 - float(np.sum(np.pi * radii**2)) / (width * height)
+            self.masses = density / (1 - self.porosity) * np.pi * radii**2
+            self.inertias = 0.5 * self.masses * radii**2
+        else:
+            volumes = packing.volumes(radii, 3)
+            self.porosity = 1 - float(volumes.sum()) / (width * height * depth)
+            self.masses = density / (1 - self.porosity) * volumes
+            self.inertias = 0.4 * self.masses * radii**2
+        self.fixed = np.zeros(self.count, bool)
+
+    @property
+    def size(self):
+        """The box, m: (width, height), or with its depth."""
+        return (self.width, self.height) if self.depth is None else (self.width, self.height, self.depth)
+
+    def fix(self, *faces, below=math.inf, within=1.05):
+        """Fix the particles with centres `within` so many radii of these faces ("bottom", "left", "right") of the box,
+        below a height (m): within 1.05 are those that touch it."""
+        y, touches = self.positions[:, 1], self._near_faces(within * self.radii)
+        for face in faces:
+            if face not in touches:
+                raise ParameterError("fix", face, f"one of {', '.join(touches)}")
+            self.fixed |= touches[face] & (y < below)
+
+    def _near_faces(self, reach):
+        """{face: (n,) bool, which particles have their centres within `reach` (n,) m of it}."""
+        x, y, *across = self.positions.T
+        near = {"bottom": y < reach, "left": x < reach, "right": x > self.width - reach}
+        for z in across:
+            near.update(front=z > 0.5 * self.depth - reach, back=z < reach - 0.5 * self.depth)
+        return near
+
+    def report(self):
+        """{name: (value, unit)}: how the packing came out."""
+        if not len(self.pairs):
+            return {"particles": (self.count, "-"), "porosity": (self.porosity, "-")}
+        i, j = self.pairs.T
+        distance = np.linalg.norm(self.positions[i] - self.positions[j], axis=1)
+        overlap = np.clip(1 - distance / (self.radii[i] + self.radii[j]), 0, None)
+        return {"particles": (self.count, "-"), "bonds": (len(self.pairs), "-"), "porosity": (self.porosity, "-"),
+                "coordination": (2 * len(self.pairs) / self.count, "-"),
+                "mean_overlap": (float(overlap.mean()), "of a diameter")}
+
+    @cached_property
+    def cells(self):
+        """kernels.voronoi.Cells: the part of the box that each particle stands for."""
+        return cells(self.positions, box=self.size)
+
+    def paths(self, model, conductivity):
+        """Pairs (m, 2) of particles that exchange heat and their conductances (m,) W/K; model: of conduction.PATHS."""
+        return paths(model, conductivity, pairs=self.pairs, cells=lambda: self.cells,
+                     fitted=lambda: self._fitted_conductance(conductivity))
+
+    def _fitted_conductance(self, conductivity):
+        return calibrated_conductance(positions=self.positions, edges=self.pairs, conductance=1.0, conductivity=conductivity)[0]
+
+
+class Specimen(Assembly):
     """A box of bonded discs of thickness 1 m.
 
     width, height: m; radius_min, radius_max: m, uniform in between; porosity: 1 - sum of areas over the box's area;
-    seed: of the packing; bonding_gap: largest gap over which particles are bonded (P 6), m; grading_factor: factor by
-    which radii grow below fine_depth (m) over as much depth again. Strengths of bonds grow with that factor, so that the macroscopic
-    strength stays uniform; in 2D a bond's stiffness sets the macroscopic one whatever the radius.
+    seed: of the packing; bonding_gap: largest gap over which particles are bonded [Rojek 2014, eq. 6], m; grading_factor: factor by
+    which radii grow below fine_depth (m) over as much depth again. Strengths of bonds grow with that factor, so that the
+    macroscopic strength stays uniform; in the plane a bond's stiffness sets the macroscopic one whatever the radius.
     Raises ParameterError naming the parameter.
     """
 
@@ -58,7 +130,6 @@ class Specimen:
                 f"at most radius_min = {radius_min:g}: bonds join neighbours", "m")
         within("grading_factor", grading_factor, 1, 8)
         positive("fine_depth", fine_depth, "m")
-        self.width, self.height = width, height
         key = dict(box=[width, height], radius_min=radius_min, radius_max=radius_max, porosity=porosity, seed=seed)
         if grading_factor > 1:
             key.update(grading_factor=grading_factor, fine_depth=fine_depth)
@@ -71,53 +142,11 @@ class Specimen:
             return {"positions": made.positions, "radii": made.radii, "scale": made.scale}
 
         stored = cached(make, **key)
-        self.positions, self.radii, self.scale = stored["positions"], stored["radii"], stored["scale"]
-        self._weigh(density)
-        self.pairs = packing.contacts(self.positions, self.radii, bonding_gap)
-        require(len(self.pairs) > self.count, "bonding_gap", bonding_gap, "large enough to bond the packing", "m")
-        self.strength_factor = self.scale[self.pairs].mean(axis=1)
-
-    def _weigh(self, density):
-        """Masses and inertias: particles carry the mass of the pores, bulk density over solid fraction (P 63)."""
-        self.density, self.count = density, len(self.radii)
-        self.porosity = 1 - float(np.sum(np.pi * self.radii**2)) / (self.width * self.height)
-        self.masses = density / (1 - self.porosity) * np.pi * self.radii**2
-        self.inertias = 0.5 * self.masses * self.radii**2
-        self.fixed = np.zeros(self.count, bool)
-
-    def fix(self, *faces, below=math.inf, within=1.05):
-        """Hold the particles with centres `within` so many radii of these faces ("bottom", "left", "right") of the box,
-        below a height (m): within 1.05 are those that touch it."""
-        y, touches = self.positions[:, 1], self._near_faces(within * self.radii)
-        for face in faces:
-            if face not in touches:
-                raise ParameterError("support", face, f"one of {', '.join(touches)}")
-            self.fixed |= touches[face] & (y < below)
-
-    def _near_faces(self, reach):
-        """{face: (n,) bool, which particles have their centres within `reach` (n,) m of it}."""
-        x, y = self.positions.T[:2]
-        return {"bottom": y < reach, "left": x < reach, "right": x > self.width - reach}
-
-    def report(self):
-        """{name: (value, unit)}: how the packing came out."""
-        i, j = self.pairs.T
-        distance = np.linalg.norm(self.positions[i] - self.positions[j], axis=1)
-        overlap = np.clip(1 - distance / (self.radii[i] + self.radii[j]), 0, None)
-        return {"particles": (self.count, "-"), "bonds": (len(self.pairs), "-"), "porosity": (self.porosity, "-"),
-                "coordination": (2 * len(self.pairs) / self.count, "-"),
-                "mean_overlap": (float(overlap.mean()), "of a diameter")}
-
-    @cached_property
-    def cells(self):
-        """kernels.cells.Cells: the part of the box that each particle stands for."""
-        return cells(self.positions, box=(self.width, self.height))
-
-    def current_positions(self):
-        """(n, d) m, of the particles in YADE now, by its one bulk read."""
-        from yade import Subdomain
-        values = np.fromiter(Subdomain().getStateValuesFromIds(list(range(self.count))), float)
-        return values.reshape(self.count, 13)[:, :self.positions.shape[1]]
+        pairs = packing.contacts(stored["positions"], stored["radii"], bonding_gap)
+        require(len(pairs) > len(stored["radii"]), "bonding_gap", bonding_gap, "large enough to bond the packing", "m")
+        self.scale, self.radius_max = stored["scale"], radius_max
+        super().__init__(positions=stored["positions"], radii=stored["radii"], width=width, height=height, density=density,
+                         pairs=pairs, strength_factor=self.scale[pairs].mean(axis=1))
 
 
 class CutOut(Specimen):
@@ -129,6 +158,7 @@ class CutOut(Specimen):
     def __init__(self, *, polygon, bonding_gap, **of_the_box):
         super().__init__(bonding_gap=bonding_gap, **of_the_box)
         self.polygon, self.whole = np.asarray(polygon, float), (self.positions, self.radii)
+        self.bonding_gap = bonding_gap
         kept = np.flatnonzero(outline.inside(self.positions, self.polygon))
         pairs = packing.contacts(self.positions[kept], self.radii[kept], bonding_gap)
         joined = coo_matrix((np.ones(len(pairs)), pairs.T), shape=(len(kept), len(kept)))
@@ -142,22 +172,28 @@ class CutOut(Specimen):
 
     @cached_property
     def cells(self):
-        """kernels.cells.Cells: the part of the polygon that each particle stands for."""
+        """kernels.voronoi.Cells: the part of the polygon that each particle stands for."""
         return cells(self.positions, polygon=self.polygon)
 
+    def _fitted_conductance(self, conductivity):
+        # The rock is no box: its conductance is fitted to a square of the packing that it is cut out of.
+        positions, radii = self.whole
+        size = np.array([self.width, self.height])
+        inside = np.all(abs(positions - size / 2) < min(size.min() / 2, 25 * self.radius_max), axis=1)
+        pairs = packing.contacts(positions[inside], radii[inside], self.bonding_gap)
+        return calibrated_conductance(positions=positions[inside], conductance=1.0, conductivity=conductivity, edges=pairs)[0]
 
-class Arranged(Specimen):
+
+class Arranged(Assembly):
     """Equal discs of one radius (m) at given places (n, 2) m of a box, the touching ones bonded: lattices and the like."""
 
     def __init__(self, *, positions, radius, width, height, density):
-        self.positions, self.width, self.height = np.asarray(positions, float), width, height
-        self.radii, self.scale = np.full(len(positions), float(radius)), np.ones(len(positions))
-        self._weigh(density)
-        self.pairs = packing.contacts(self.positions, self.radii, 1e-6 * radius)
-        self.strength_factor = np.ones(len(self.pairs))
+        radii = np.full(len(positions), float(radius))
+        super().__init__(positions=positions, radii=radii, width=width, height=height, density=density,
+                         pairs=packing.contacts(np.asarray(positions, float), radii, 1e-6 * radius))
 
 
-class Block(Specimen):
+class Block(Assembly):
     """A box of equal spheres: x from 0 to `width` along the cut, y from 0 to `height` upwards, z across by `depth`,
     centred at z = 0, all m.
 
@@ -176,33 +212,19 @@ class Block(Specimen):
             return {"positions": made.positions, "radii": made.radii}
 
         stored = cached(make, box=list(box), radius=radius, porosity=porosity, seed=seed, jammed=bonded)
-        places, self.radii = stored["positions"], stored["radii"]
-        self.loosened = 1.0 if bonded else self._clear(places)
-        self.width, self.height, self.depth = (self.loosened * length for length in box)
-        self.positions = self.loosened * (places - (0.0, 0.0, 0.5 * depth))
-        self._weigh(density)
-        near = self.near(bonding_gap)
-        require(not bonded or len(near) > self.count, "bonding_gap", bonding_gap, "large enough to bond the packing", "m")
-        self.pairs = near if bonded else near[:0]
-        self.strength_factor = np.ones(len(self.pairs))
+        places, radii = stored["positions"], stored["radii"]
+        self.loosened = 1.0 if bonded else _clearance(places, radii)
+        width, height, depth = (self.loosened * length for length in box)
+        positions = self.loosened * (places - (0.0, 0.0, 0.5 * box[2]))
+        pairs = self._near(positions, radii, bonding_gap)
+        require(not bonded or len(pairs) > len(radii), "bonding_gap", bonding_gap, "large enough to bond the packing", "m")
+        super().__init__(positions=positions, radii=radii, width=width, height=height, depth=depth, density=density,
+                         pairs=pairs if bonded else pairs[:0])
 
-    def _clear(self, places):
-        """Factor on all distances that leaves no overlap."""
-        i, j = packing.contacts(places, self.radii).T
-        distance = np.linalg.norm(places[i] - places[j], axis=1)
-        return 1 + 1e-9 + float(np.max((self.radii[i] + self.radii[j]) / distance - 1, initial=0.0))
-
-    def _weigh(self, density):
-        self.density, self.count = density, len(self.radii)
-        volumes = packing.volumes(self.radii, 3)
-        self.porosity = 1 - float(volumes.sum()) / (self.width * self.height * self.depth)
-        self.masses = density / (1 - self.porosity) * volumes
-        self.inertias = 0.4 * self.masses * self.radii**2
-        self.fixed = np.zeros(self.count, bool)
-
-    def _near_faces(self, reach):
-        z = self.positions[:, 2]
-        return {**super()._near_faces(reach), "front": z > 0.5 * self.depth - reach, "back": z < reach - 0.5 * self.depth}
+    @cached_property
+    def cells(self):
+        """kernels.voronoi.Cells: the part of the block that each sphere stands for."""
+        return cells(self.positions + (0.0, 0.0, 0.5 * self.depth), box=self.size)
 
     def leave_out(self, gone):
         """Take particles (n,) bool out of the box, which keeps its size, as long as nothing is bonded."""
@@ -212,9 +234,14 @@ class Block(Specimen):
 
     def near(self, gap):
         """Pairs (m, 2) of particles whose gap was at most so wide (m) before the block was loosened."""
-        return packing.contacts(self.positions, self.radii, gap + (self.loosened - 1) * (2 * self.radii.max() + gap))
+        return self._near(self.positions, self.radii, gap)
 
-    def report(self):
-        if len(self.pairs):
-            return super().report()
-        return {"particles": (self.count, "-"), "porosity": (self.porosity, "-")}
+    def _near(self, positions, radii, gap):
+        return packing.contacts(positions, radii, gap + (self.loosened - 1) * (2 * radii.max() + gap))
+
+
+def _clearance(places, radii):
+    """Factor on all distances that leaves no overlap."""
+    i, j = packing.contacts(places, radii).T
+    distance = np.linalg.norm(places[i] - places[j], axis=1)
+    return 1 + 1e-9 + float(np.max((radii[i] + radii[j]) / distance - 1, initial=0.0))

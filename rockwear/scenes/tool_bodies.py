@@ -1,7 +1,7 @@
 """A tool's bodies in YADE: particles or facets on a prescribed motion."""
 import math
-import numpy as np
 
+import numpy as np
 from yade import NewtonIntegrator, O, Quaternion, Vector3, utils
 
 from rockwear.engines import access
@@ -12,11 +12,11 @@ from rockwear.scenes.yade_scene import TOOL_MASK, finite_disc, sphere
 
 
 class ToolBodies:
-    """The tool's surface in YADE, led along a motion: only these particles take part in contact detection.
+    """The tool's surface particles in YADE, on a prescribed motion: only these take part in contact detection.
 
-    They hold no mass: the tool is led, and no kinetic energy of it enters the balance.
+    They have no mass: the motion is prescribed, and no kinetic energy of the tool enters the balance.
 
-    tool: a tool.Tool; motion: of kernels.rigid_motion. `pose` is where the tool is, `velocities` {particle: (vx, vy)}
+    tool: a model.particle_tool.Tool; motion: of kernels.rigid_motion. `pose` is where the tool is, `velocities` {particle: (vx, vy)}
     and `angular_velocity` (rad/s) are how YADE moves it in this step.
     """
 
@@ -39,7 +39,7 @@ class ToolBodies:
             self.pose = Pose(np.array(state.pos)[:2] - turned.of(self.positions[[index]])[0], turned.turn)
 
     def aim(self, time, period):
-        """Lead every particle along the chord from where it is to where the motion has it `period` s after `time`.
+        """Move every particle along the chord from where it is to where the motion has it `period` s after `time`.
 
         Between two visits a particle is off its path by at most v w period^2 / 8, and no error ever builds up.
         """
@@ -125,7 +125,7 @@ class ToolBodies:
 
 
 class SphereBodies(ToolBodies):
-    """The surface of a tool of spheres, led in the plane of the cut. tool: a tool.LayeredTool."""
+    """The surface of a tool of spheres, moved in the plane of the cut. tool: a model.particle_tool.LayeredTool."""
 
     def __init__(self, tool, motion):
         super().__init__(tool, motion)
@@ -137,17 +137,14 @@ class SphereBodies(ToolBodies):
 
 
 class FacetBodies(ToolBodies):
-    """A tool's facets in YADE, led like particles; each is the triangle that facet_tool.corners gives.
+    """A tool's facets in YADE, moved like particles; each is the triangle that facet_tool.corners gives.
 
-    tool: a facet_tool.FacetTool. `positions` (m, 2) and `heights` (m,) m are the bodies' centres in the tool's frame as
+    tool: a model.facet_tool.FacetTool. `positions` (m, 2) and `heights` (m,) m are the bodies' centres in the tool's frame as
     they are in YADE, `local` (m, 3, 3) m their corners about them; `reshape` brings all to the tool's present shape.
     """
 
     def __init__(self, tool, motion):
-        self.tool, self.motion, self.count = tool, motion, tool.count
-        self.body_of, self.ids = {}, []
-        self.pose = motion.pose(0.0)
-        self.velocities, self.angular_velocity = {}, motion.angular_velocity
+        super().__init__(tool, motion)
         self._measure()
 
     def _measure(self):

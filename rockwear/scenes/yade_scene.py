@@ -1,16 +1,16 @@
 """Building blocks of scenes: what is put into YADE, and how."""
 import math
 
+import numpy as np
 from yade import (
     Bo1_Facet_Aabb, Bo1_Sphere_Aabb, ForceResetter, FrictMat, FrictViscoMat, Ig2_Facet_Sphere_ScGeom,
     Ig2_Sphere_Sphere_ScGeom, InsertionSortCollider, InteractionLoop, Ip2_FrictMat_FrictMat_FrictPhys,
     Ip2_FrictMat_FrictViscoMat_FrictViscoPhys, Ip2_FrictViscoMat_FrictViscoMat_FrictViscoPhys,
     Ip2_JCFpmMat_JCFpmMat_JCFpmPhys, JCFpmMat, Law2_ScGeom_FrictPhys_CundallStrack,
     Law2_ScGeom_FrictViscoPhys_CundallStrackVisco, Law2_ScGeom_JCFpmPhys_JointedCohesiveFrictionalPM, MatchMaker,
-    NewtonIntegrator, O, log, utils)
+    NewtonIntegrator, O, Subdomain, log, utils)
 
-
-# It would call it a bug that its lists of bodies are off; see Scene._fresh_bounds.
+# It would call it a bug that its lists of bodies are off; see Scene._refresh_bounds.
 log.setLevel("BodyContainer", log.ERROR)
 
 ROCK_MASK, TOOL_MASK = 1, 3
@@ -40,7 +40,7 @@ def put_tool_material(*, mu, contact_damping):
 
 
 def put_rock(rock):
-    """The specimen's particles as bodies 0..n-1, its fixed ones held."""
+    """The specimen's particles as bodies 0..n-1, its fixed ones without degrees of freedom."""
     for position, radius, mass, inertia, fixed in zip(rock.positions.tolist(), rock.radii.tolist(), rock.masses.tolist(),
                                                      rock.inertias.tolist(), rock.fixed):
         particle = finite_disc if len(position) == 2 else sphere
@@ -50,40 +50,39 @@ def put_rock(rock):
         O.bodies.append(body)
 
 
-def put_loop(*, kn, kt, mu, tool=None, damping=0.0, ratcheting_free=True):
-    """YADE's own loop: bonds, rock on rock, tool on rock (M 4.5), explicit integration.
+def put_loop(*, rock, tool=None, damping=0.0, ratcheting_free=True):
+    """YADE's own loop: bonds, rock on rock, tool on rock [Rojek 2003, 4.5], explicit integration.
 
-    tool: (kn, kt, mu) of its contacts, None without a tool; damping: non-viscous (Cundall's), a fraction of each force;
-    ratcheting_free: shear between spheres by their full radii, YADE's way, which does not see where they really touch
-    (kernels.stability); false: as the points of contact move, so that the springs give back what they took.
+    rock: kn, kt (N/m) and mu of contacts within the rock, a bond law or the like; tool: those of its contacts, None without
+    a tool; damping: non-viscous (Cundall's), a fraction of each force; ratcheting_free: shear between spheres by their full
+    radii, YADE's way, which does not see where they really touch (kernels.stability); False: as the points of contact move,
+    so that the springs give back what they took.
     """
-    parameters = [Ip2_FrictMat_FrictMat_FrictPhys(kn=exactly(kn), ks=exactly(kt), frictAngle=exactly(math.atan(mu)))]
+    parameters = [Ip2_FrictMat_FrictMat_FrictPhys(kn=exactly(rock.kn), ks=exactly(rock.kt), frictAngle=exactly(math.atan(rock.mu)))]
     laws = [Law2_ScGeom_FrictPhys_CundallStrack()]
     if tool:
-        tool_kn, tool_kt, tool_mu = tool
         parameters.append(Ip2_FrictMat_FrictViscoMat_FrictViscoPhys(
-            kn=exactly(tool_kn), kRatio=exactly(tool_kt / tool_kn), frictAngle=exactly(math.atan(tool_mu))))
+            kn=exactly(tool.kn), kRatio=exactly(tool.kt / tool.kn), frictAngle=exactly(math.atan(tool.mu))))
         laws.append(Law2_ScGeom_FrictViscoPhys_CundallStrackVisco(traceEnergy=True))
     geometry = [Ig2_Sphere_Sphere_ScGeom(avoidGranularRatcheting=ratcheting_free)]
     _put_engines([Bo1_Sphere_Aabb()], geometry, parameters, laws, damping)
 
 
-def put_loop_with_facets(*, kn, kt, mu, tool, damping=0.0, ratcheting_free=True):
+def put_loop_with_facets(*, rock, tool, damping=0.0, ratcheting_free=True):
     """The same beside a tool of facets.
 
-    YADE puts a facet first into its contacts, and has no functor for (steel, rock) in this order. Steel and loose rock
-    are of one kind here, FrictViscoMat, and the constants go by the pair of materials; rock has no dashpot. One law then
-    keeps one account of friction, which engines.facets divides.
+    YADE puts a facet first into its contacts, and has no functor for (tool, rock) in this order. Tool and loose rock are of
+    one kind here, FrictViscoMat, and the constants go by the pair of materials; rock has no dashpot. One law then keeps one
+    sum of plastic dissipation, which engines.facet_contact divides.
     """
-    rock, steel = O.materials["loose rock"].id, O.materials["steel"].id
+    loose, steel = O.materials["loose rock"].id, O.materials["steel"].id
 
     def by_pair(of_rock, of_tool):
-        return MatchMaker(matches=((rock, rock, of_rock), (rock, steel, of_tool)))
+        return MatchMaker(matches=((loose, loose, of_rock), (loose, steel, of_tool)))
 
-    tool_kn, tool_kt, tool_mu = tool
     parameters = [Ip2_FrictViscoMat_FrictViscoMat_FrictViscoPhys(
-        kn=by_pair(kn, tool_kn), kRatio=by_pair(kt / kn, tool_kt / tool_kn),
-        frictAngle=by_pair(math.atan(mu), math.atan(tool_mu)))]
+        kn=by_pair(rock.kn, tool.kn), kRatio=by_pair(rock.kt / rock.kn, tool.kt / tool.kn),
+        frictAngle=by_pair(math.atan(rock.mu), math.atan(tool.mu)))]
     geometry = [Ig2_Sphere_Sphere_ScGeom(avoidGranularRatcheting=ratcheting_free), Ig2_Facet_Sphere_ScGeom()]
     _put_engines([Bo1_Sphere_Aabb(), Bo1_Facet_Aabb()], geometry, parameters,
                  [Law2_ScGeom_FrictViscoPhys_CundallStrackVisco(traceEnergy=True)], damping)
@@ -96,6 +95,12 @@ def _put_engines(bounds, geometry, parameters, laws, damping):
         InteractionLoop(geometry, [Ip2_JCFpmMat_JCFpmMat_JCFpmPhys(cohesiveTresholdIteration=1), *parameters],
                         [Law2_ScGeom_JCFpmPhys_JointedCohesiveFrictionalPM(neverErase=True), *laws]),
         NewtonIntegrator(damping=damping)]
+
+
+def rock_positions(rock):
+    """(n, d) m of the specimen's particles in YADE now, by its one bulk read."""
+    values = np.fromiter(Subdomain().getStateValuesFromIds(list(range(rock.count))), float)
+    return values.reshape(rock.count, 13)[:, :rock.positions.shape[1]]
 
 
 def make_bonds(rock, bonds):

@@ -1,0 +1,221 @@
+"""A pick's turns: cuts into fresh rock, and cooling in water, in which only heat flows [Rojek 2014, 5.3]."""
+from contextlib import contextmanager
+
+import numpy as np
+from scipy.spatial import cKDTree
+from yade import O
+
+from rockwear.kernels.conduction import HeatNetwork
+from rockwear.scenes.programme import Programme, StartState
+
+COOLING_CHUNK = 20
+"""Cooling steps between two looks at the clock."""
+REPEATED = 40
+"""Turns for which the mean heating of the cuts is repeated."""
+HOTTEST = 0.01
+"""Part of the tool's mass whose mean temperature is recorded beside that of the hottest particle."""
+
+
+class Turns(Programme):
+    """Approach, then cut and cooling in turn, each cut into the rock that the approach left.
+
+    motion: of kernels.rigid_motion; approach_time, cut_time, turn_time: s of the process; cycles: turns; cooling_period: s
+    between steps while the pick cools and the mechanics stand still; chip_area: m2 of rock that a cut goes through; arrays:
+    {name: array} for the report.
+    """
+
+    def __init__(self, *, motion, approach_time, cut_time, turn_time, cycles, cooling_period, chip_area, arrays):
+        self.motion, self.approach_time, self.cut_time, self.turn_time = motion, approach_time, cut_time, turn_time
+        self.cycles, self.cooling_period, self.chip_area, self.arrays = cycles, cooling_period, chip_area, arrays
+        self.cooled, self.worn_heat = 0, 0.0
+
+    def attach(self, scene):
+        super().attach(scene)
+        self.start = StartState(scene)
+
+    def stages(self):
+        found = {"approach": self.approach_time}
+        for n in range(1, self.cycles + 1):
+            found.update({f"cut {n}": self.cut_time, f"cooling {n}": self.turn_time - self.cut_time})
+        return found
+
+    def planned(self):
+        times = self.stages()
+        self.scene.stages = [(name, max(1, round(times[name] / self.cooling_period)) if "cooling" in name else steps)
+                             for name, steps in self.scene.stages]
+        self.cooling_step = (self.turn_time - self.cut_time) / self.scene.stages[2][1]
+
+    def begin(self):
+        self.path_start = O.iter
+
+    def path_time(self):
+        """Seconds of the mechanics along the path; the rock put back before a cut puts back this clock too."""
+        return (O.iter - self.path_start) * self.scene.time_step
+
+    # ---- the clock
+
+    @property
+    def cooling(self):
+        """True while the pick turns in water."""
+        return not self.scene.finished and self.scene.stage > 0 and self.scene.stage % 2 == 0
+
+    @property
+    def step(self):
+        return self.cooled if self.cooling else super().step
+
+    @property
+    def time(self):
+        return self.scene.clock + self.cooled * self.cooling_step if self.cooling else super().time
+
+    def run(self):
+        if not self.cooling:
+            return False
+        scene = self.scene
+        for _ in range(min(COOLING_CHUNK, scene.stages[scene.stage][1] - self.cooled)):
+            if scene.heat:
+                scene.heat.cool(self.cooling_step)
+            self.cooled += 1
+            scene.recorder.act()
+        return True
+
+    # ---- stages
+
+    def begin_stage(self, folder):
+        scene, self.cooled = self.scene, 0
+        if self.cooling:
+            if scene.heat:
+                scene.heat.leave_rock()
+            return
+        if scene.stage == 1:
+            self.start.keep(folder)
+        elif not scene.finished:
+            self.start.put_back(folder)
+        if scene.tool.profile and not scene.finished:
+            scene.tool.profile.begin_cycle(scene.tool.mark_of_shape())
+
+    def reaches_rock(self):
+        # Every turn takes the pick through the whole rock, however worn it is.
+        return True
+
+    @contextmanager
+    def removal(self):
+        network = self.scene.heat.network
+        capacity, before = network.capacity, network.balance["removed"]
+        yield
+        lost = float((capacity - network.capacity).sum())
+        self.worn_heat += before - network.balance["removed"] - lost * self.scene.heat_model.tool_temperature
+
+    # ---- what a checkpoint holds
+
+    def state(self):
+        return {"cooled": self.cooled, "worn_heat": self.worn_heat, "path_start": self.path_start, "start": self.start.state()}
+
+    def restore(self, state):
+        self.cooled, self.path_start = int(state["cooled"]), int(state["path_start"])
+        self.worn_heat = float(state["worn_heat"])
+        self.start.restore(state["start"])
+
+    def save(self, directory, folder):
+        self.start.save(directory, folder)
+
+    def load(self, directory, folder):
+        self.start.load(directory, folder)
+
+    # ---- what the folder of a run shows
+
+    def cracks(self):
+        return self.start.cracks
+
+    def log(self):
+        return {"working_time": (self.scene.time, "s")}
+
+    def heat_log(self):
+        heat = self.scene.heat
+        hot, mean = self._hot_and_mean(heat.network)
+        return {"tool_temperature_hot": (hot, "K"), "tool_temperature_mean": (mean, "K"),
+                "water_heat": (-heat.network.balance["convected"], "J/m"),
+                "pick_friction_heat": (float(heat.averaged["friction_heat"].sum()), "J/m"),
+                "pick_heat_worn_away": (self.worn_heat, "J/m")}
+
+    def _hot_and_mean(self, network):
+        """Mean temperatures (K) of the hottest part of the tool's mass, and of all of it."""
+        rock = self.scene.rock.count
+        capacity, temperature = network.capacity[rock:], network.temperature[rock:]
+        order = np.argsort(-temperature)
+        order = order[capacity[order] > 0]
+        hottest = order[:max(1, round(HOTTEST * len(order)))]
+        return (float(np.average(temperature[part], weights=capacity[part])) for part in (hottest, order))
+
+    def model_arrays(self):
+        return self.arrays
+
+    def cut_area(self):
+        """Area (m2) of the rock that the tool has gone through."""
+        stage = self.scene.stage
+        cuts = stage // 2
+        if stage % 2 and not self.scene.finished:
+            cuts += self.step / self.scene.stages[stage][1]
+        return self.chip_area * cuts
+
+    def results(self, columns):
+        scene, area, unit = self.scene, self.cut_area(), self.scene.units.force
+        stage = columns.get("stage", np.zeros(0))
+        cutting = stage % 2 == 1 if (stage % 2 == 1).any() else np.ones(len(stage), bool)
+        forces = {name: columns.get(name, np.zeros(1)) for name in ("cutting_force", "thrust_force")}
+        found = {"working_time": (scene.time, "s"), "peak_cutting_force": (float(forces["cutting_force"].max()), unit),
+                 "specific_energy": (scene.tool.contact.work_done / area if area else 0.0, "J/m3")}
+        for name, force in forces.items():
+            found[f"mean_{name}"] = float(force[cutting].mean() if len(stage) else 0.0), unit
+        for n in range(1, self.cycles + 1):
+            now = stage == 2 * n - 1
+            if now.any():
+                found[f"mass_lost_after_cut_{n}"] = float(columns["mass_lost"][now].max()), "-"
+                for name in ("max", "hot") if scene.heat else ():
+                    found[f"peak_temperature_{name}_{n}"] = float(columns[f"tool_temperature_{name}"][now].max()), "K"
+        return found
+
+    def tables(self):
+        """Where the pick's temperature would go in further turns."""
+        if not (self.scene.heat and self.scene.finished):
+            return {}
+        header = ["turn [-]", "peak [K]", "cooled [K]", "mean [K]", "absorbed [J/m]", "released [J/m]"]
+        return {"turns.csv": (header, self.repeated_turns(REPEATED))}
+
+    def repeated_turns(self, count):
+        """Rows of turns.csv: the heating of all cuts so far, in the mean, again and again from the cold.
+
+        Each tool node takes the mean power of its friction, and exchanges heat with the water and, by the mean conductance,
+        with the rock that it touched; then it cools. peak, cooled: K of the hottest part at the end of cutting and of
+        cooling; mean: K of the whole then; absorbed, released: J/m of friction and to water and rock, which become equal in
+        the stationary state [Rojek 2014, 5.3]. No heat goes with worn particles here.
+        """
+        scene, model = self.scene, self.scene.heat_model
+        state = scene.heat.network.state()
+        rock, nodes = scene.rock.count, len(state["capacity"]) - scene.rock.count
+        # Rock that has cooled down keeps out of the balance.
+        state["temperature"] = np.repeat([model.ambient, model.tool_temperature], [rock, nodes])
+        network = HeatNetwork(capacity=np.ones(rock + nodes), edges=np.empty((0, 2), int), conductance=0.0, temperature=0.0)
+        network.restore(state)
+        there = np.flatnonzero(network.capacity[rock:] > 0)
+        # What particles took up that are gone since comes to the nearest that are left.
+        places = scene.heat.body.positions
+        heir = cKDTree(places[there]).query(places)[1]
+        power, touch, rock_temperature = scene.heat.averages()
+        power, touch, warmth = (np.bincount(heir, values, len(there)) for values in (power, touch, touch * rock_temperature))
+        tool = rock + there
+        water = state["convection"][tool]
+        wetted = np.divide(water * model.ambient + warmth, water + touch, out=np.full(len(tool), model.ambient),
+                           where=water + touch > 0)
+        rows = []
+        for turn in range(1, count + 1):
+            balance = network.balance
+            network.source(tool, power)
+            network.convect(tool, water + touch, wetted)
+            network.advance(self.cut_time)
+            peak, _ = self._hot_and_mean(network)
+            network.source(tool, 0.0)
+            network.convect(tool, water, model.ambient)
+            network.advance(self.turn_time - self.cut_time)
+            absorbed, released = (abs(network.balance[name] - balance[name]) for name in ("generated", "convected"))
+            rows.append((turn, peak, *self._hot_and_mean(network), absorbed, released))
+        return rows
