@@ -1,5 +1,7 @@
 """YADE's own objects in the scene that is in O: engines, functors, contacts."""
-from yade import InteractionLoop, Law2_ScGeom_FrictViscoPhys_CundallStrackVisco, NewtonIntegrator, O, Sphere
+import numpy as np
+from yade import (
+    InteractionLoop, Law2_ScGeom_FrictViscoPhys_CundallStrackVisco, NewtonIntegrator, O, Sphere, Subdomain)
 
 
 SLIDING = 1 - 1e-9
@@ -66,3 +68,9 @@ def contact_energy(interactions, overlap=overlap_of_spheres):
         if depth > 0:
             energy += 0.5 * (i.phys.kn * depth**2 + i.phys.shearForce.squaredNorm() / i.phys.ks)
     return energy
+
+
+def rock_positions(rock):
+    """(n, d) m of the specimen's particles in YADE now, by its one bulk read."""
+    values = np.fromiter(Subdomain().getStateValuesFromIds(list(range(rock.count))), float)
+    return values.reshape(rock.count, 13)[:, :rock.positions.shape[1]]

@@ -3,6 +3,7 @@ import math
 
 import numpy as np
 
+from rockwear.engines import access
 from rockwear.engines.base import Engine
 from rockwear.kernels.free_surface import free_surface
 from rockwear.kernels.surface_recession import neighbours, receded
@@ -132,7 +133,7 @@ class Heat(Engine):
             self.find_surfaces()
 
     def _rock_now(self):
-        """Rock particles in contact conduct, and those across closed pores; new contacts with the mean conductance."""
+        """Rock particles in contact conduct, and those across closed pores; later contacts with the mean conductance."""
         pairs, conductance = self.rock_paths
         loose = np.sort(np.array([(i.id1, i.id2) for i in self.rock_friction.contacts], int).reshape(-1, 2), axis=1)
         touching = np.concatenate([self.bonds.pairs[self.bonds.in_contact()], loose])
@@ -147,7 +148,7 @@ class Heat(Engine):
         return pairs[alive], conductance[alive]
 
     def _exposed_rock(self):
-        exposed = free_surface(positions=self.rock.current_positions(), radii=self.rock.radii)
+        exposed = free_surface(positions=access.rock_positions(self.rock), radii=self.rock.radii)
         exposed[self.rock.fixed] = 0.0
         exposed[self.touched[:, 1]] = 0.0
         return exposed

@@ -2,12 +2,14 @@
 import numpy as np
 from yade import O
 
+from rockwear.engines import access
 from rockwear.engines.base import RunEnded
-from rockwear.engines.bonds import Bonds, Separation
+from rockwear.engines.bonds import Bonds
 from rockwear.engines.damping import BackgroundDamping
 from rockwear.engines.energy_guard import EnergyGuard
 from rockwear.engines.path_follower import PathFollower
 from rockwear.engines.recorder import Recorder
+from rockwear.engines.separation import Separation
 from rockwear.engines.shear_rotation import ShearRotation
 from rockwear.engines.velocity_increment import VelocityIncrement
 from rockwear.model.contact import PLANE
@@ -109,7 +111,7 @@ class Cut(Scene):
         period = max(1, self.steps_in(self.accuracy.heat_period))
         common = dict(rock=self.rock, bonds=self.bonds, rock_friction=self.rock_friction, tool_contact=self.tool.contact)
         self.heat = self.heat_model.engine(
-            **common, body=self.tool.thermal_body(), wear_acceleration=self.tool.wear.acceleration,
+            **common, body=self.tool.thermal_body, wear_acceleration=self.tool.wear.acceleration,
             time_scale=self.programme.heat_time_scale, surface_period=self.accuracy.surface_period, period=period)
         if self.expansion_model:
             self.expansion = self.expansion_model.engine(**common, heat=self.heat, period=period)
@@ -164,7 +166,7 @@ class Cut(Scene):
 
     def canonical(self):
         super().canonical()
-        self.tool.contact.look_around()
+        self.tool.contact.find_contacts()
 
     def end_stage(self, folder):
         """Close the balances of the stage; the programme prepares the next one."""
@@ -213,5 +215,5 @@ class Cut(Scene):
         found = super().stored_energy()
         found["contact_elastic"] += self.tool.contact.elastic_energy()
         if self.gravity:
-            found["potential"] = float(self.rock.masses @ yade_scene.rock_positions(self.rock)[:, 1]) * self.gravity.g
+            found["potential"] = float(self.rock.masses @ access.rock_positions(self.rock)[:, 1]) * self.gravity.g
         return found

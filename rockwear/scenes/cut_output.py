@@ -4,9 +4,9 @@ import math
 import numpy as np
 from yade import utils
 
+from rockwear.engines import access
 from rockwear.kernels.archard import KELVIN
 from rockwear.run import vtk
-from rockwear.scenes import yade_scene
 from rockwear.scenes.balances import energy_warnings, with_residual
 from rockwear.scenes.output import Output
 
@@ -21,7 +21,7 @@ class CutOutput(Output):
                    "rock_friction": self.scene.rock_friction.total, "contact_dashpots": contact.dashpot_dissipated,
                    "bond_breaking": self.scene.bonds.energy_released,
                    "background_damping": self.scene.damping.dissipated if self.scene.damping else 0.0,
-                   "removed_contacts": self.scene.tool.wear_engine.contact_energy_removed - contact.born}
+                   "removed_contacts": self.scene.tool.removed_energy}
         if self.scene.expansion:
             balance["thermal_expansion"] = -self.scene.expansion.work
         return with_residual(balance, "tool_work")
@@ -68,7 +68,7 @@ class CutOutput(Output):
         rock = self.scene.rock
         self.scene.tool.bodies.connect()
         pose = self.scene.tool.bodies.pose
-        return {"time": self.scene.time, "stage": self.scene.stage, "rock_positions": yade_scene.rock_positions(rock),
+        return {"time": self.scene.time, "stage": self.scene.stage, "rock_positions": access.rock_positions(rock),
                 "broken_bonds": np.bincount(rock.pairs[self.scene.bonds.status != 0].ravel(), minlength=rock.count),
                 "status": self.scene.bonds.status, "tool_offset": pose.offset, "tool_turn": pose.turn,
                 "temperature": self.scene.heat.network.temperature if self.scene.heat else np.empty(0), **self.scene.tool.snapshot()}

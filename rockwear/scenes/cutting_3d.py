@@ -13,6 +13,7 @@ from rockwear.model.contact import SPACE
 from rockwear.model.facet_tool import MOST_FACETS, FacetTool, check_size, read_stl
 from rockwear.model.particle_tool import LayeredTool
 from rockwear.model.rock import Block
+from rockwear.model.thermal_body import FacetBody
 from rockwear.scenes import parameters, parts
 from rockwear.scenes.cut import Cut
 from rockwear.scenes.physics import Gravity
@@ -83,7 +84,7 @@ def scaled(values):
     v = SimpleNamespace(**values)
     c = v.scale_factor = 1.0 if v.full else v.scale_factor
     sized = {p.name: p.unit for group in (parameters.BONDS, parameters.CONTACT) for p in group.parameters}
-    for name, unit in {**sized, "radius": "m", "tool_radius": "m"}.items():
+    for name, unit in {**sized, "radius": "m", "tool_radius": "m", "thermal_radius": "m"}.items():
         if name in values and unit in SCALED:
             setattr(v, name, c**SCALED[unit] * values[name])
     return v
@@ -118,8 +119,10 @@ def tool(v):
     """The tool assembly: spheres in layers, triangles of an outline drawn out across the cut, or an STL file."""
     common = dict(contact_law=parts.contact_law(v), wear=parts.tool_wear(v), units=SPACE, sampling_period=v.sampling_period)
     if v.stl:
+        require(not v.heat, "stl", v.stl, "left out with heat = true: heat is for a tool with an outline")
         seen, model = stl_tool(v)
-        return FacetAssembly(model=model, outline=seen, work_fraction=v.work_fraction, reshape=v.reshape, **common)
+        return FacetAssembly(model=model, outline=seen, work_fraction=v.work_fraction, reshape=v.reshape,
+                             thermal_body=None, **common)
     require(v.breadth < v.depth, "breadth", v.breadth, f"less than the block's depth {v.depth:g}", "m")
     outline = parts.outline(v)
     height = float(np.ptp(outline[:, 1]))
@@ -128,7 +131,9 @@ def tool(v):
         check_facet(v, 2 * area(outline) + perimeter(outline) * v.breadth)
         corners, facets = prism(outline, v.breadth, v.facet)
         model = FacetTool(vertices=corners, facets=facets, density=v.tool_density)
-        return FacetAssembly(model=model, outline=outline, work_fraction=v.work_fraction, reshape=v.reshape, **common)
+        return FacetAssembly(
+            model=model, outline=outline, work_fraction=v.work_fraction, reshape=v.reshape, **common,
+            thermal_body=lambda: FacetBody(model, fill=parts.thermal_fill(v, outline), breadth=v.breadth))
     require(v.tool_radius < v.radius, "tool_radius", v.tool_radius, f"less than that of the rock, {v.radius:g}", "m")
     model = LayeredTool(vertices=outline, radius=v.tool_radius, breadth=v.breadth, seed=v.seed, removal=v.removal,
                         density=v.tool_density)

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 
 from rockwear.kernels.checks import require
-from rockwear.kernels.parameter import Group, Parameter, above_zero, duration, flag, integer, number, speed
+from rockwear.kernels.parameter import Group, Parameter, above_zero, duration, flag, integer, number
 from rockwear.kernels.polygon import nearest_on_edges
 from rockwear.kernels.rigid_motion import SwingAndRotation
 from rockwear.model.rock import CutOut

@@ -64,8 +64,12 @@ SHAPE = (
 PLANE_TOOL = Group("tool", (
     Parameter("tool", "particles", "", choice("particles", "segments"), "what the tool is made of", "[Rojek 2003, 8.2, 8.1]"),
     *OUTLINE,
-    Parameter("tool_radius_min", 0.4e-3, "m", above_zero, "smallest radius of tool particles", "[Rojek 2003, 9.2]"),
-    Parameter("tool_radius_max", 0.52e-3, "m", above_zero, "largest radius of tool particles", "[Rojek 2003, 9.2]"),
+    Parameter("tool_radius_min", 0.4e-3, "m", above_zero, "smallest radius of tool particles", "[Rojek 2003, 9.2]",
+              OF_PARTICLES),
+    Parameter("tool_radius_max", 0.52e-3, "m", above_zero, "largest radius of tool particles", "[Rojek 2003, 9.2]",
+              OF_PARTICLES),
+    Parameter("thermal_radius", 0.5e-3, "m", above_zero, "mean radius of the particles that fill a tool of facets for its heat",
+              "ours", {**OF_FACETS, "heat": (True,)}),
     Parameter("segment", 1e-3, "m", above_zero, "longest segment of the tool's outline", "ours", OF_FACETS),
     *SHAPE,
     Parameter("tool_density", 7830.0, "kg/m3", density, "density of the tool", "[Rojek 2003, 7.4]")))
@@ -78,6 +82,8 @@ SPACE_TOOL = Group("tool", (
               OF_PARTICLES),
     Parameter("stl", "", "", file, "STL file in m: a tool of your own in place of outline, breadth and tooth_*. It moves in +x, "
               "y is up, z across, the lowest point is the tip; top and back are fixed", "ours", {**OF_FACETS, "outline": ("",)}),
+    Parameter("thermal_radius", 2e-3, "m", above_zero, "mean radius of the particles that fill a tool of facets for its heat",
+              "ours", {**OF_FACETS, "heat": (True,)}),
     Parameter("facet", 0.02, "m", above_zero, "size of the tool's triangles, halves of such squares; edges of an STL file longer "
               "than 1.5 times that are cut in halves", "ours", OF_FACETS),
     *SHAPE,

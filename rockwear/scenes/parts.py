@@ -10,6 +10,7 @@ from rockwear.model.contact import PLANE, ContactLaw
 from rockwear.model.facet_tool import FacetTool
 from rockwear.model.materials import Material
 from rockwear.model.particle_tool import Tool
+from rockwear.model.thermal_body import FacetBody
 from rockwear.scenes.accuracy import Accuracy
 from rockwear.scenes.physics import HeatModel, ThermalExpansion, ToolWear
 from rockwear.scenes.tool_assembly import FacetAssembly, ParticleAssembly
@@ -107,12 +108,19 @@ def check_radii(v):
                 f"at most the rock's radius_min = {v.radius_min:g}: a smooth tool needs finer particles [Rojek 2003, 6.5]", "m")
 
 
+def thermal_fill(v, vertices):
+    """Particles that stand for the heat of a tool of facets with this outline (k, 2) m."""
+    return Tool(vertices=vertices, radius_min=0.87 * v.thermal_radius, radius_max=1.13 * v.thermal_radius, seed=v.seed,
+                removal="none", density=v.tool_density)
+
+
 def plane_tool(v, vertices):
     """The tool assembly of an outline (k, 2) m in the plane, of particles or segments."""
     common = dict(outline=vertices, contact_law=contact_law(v), wear=tool_wear(v), units=PLANE, sampling_period=v.sampling_period)
     if v.tool == "segments":
         model = FacetTool.of_outline(vertices, segment=v.segment, density=v.tool_density)
-        return FacetAssembly(model=model, work_fraction=v.work_fraction, reshape=v.reshape, **common)
+        return FacetAssembly(model=model, work_fraction=v.work_fraction, reshape=v.reshape,
+                             thermal_body=lambda: FacetBody(model, fill=thermal_fill(v, vertices)), **common)
     model = Tool(vertices=vertices, radius_min=v.tool_radius_min, radius_max=v.tool_radius_max, seed=v.seed, removal=v.removal,
                  density=v.tool_density)
     return ParticleAssembly(model=model, **common)

@@ -39,7 +39,7 @@ class ToolWear:
         engine = tool.wear_engine
         error = distribution_error(tool.profile.increments)
         events = events_per_particle(events=engine.events, worn=engine.worn, limit=engine.limit)
-        trusted = trusted_wear_acceleration(acceleration=self.acceleration, error=error, events=events,
+        trusted = trusted_wear_acceleration(wear_acceleration=self.acceleration, error=error, events=events,
                                             tolerance=self.tolerance)
         return {"wear_distribution_error": (error, "-"), "contact_events_per_particle": (events, "-"),
                 "trusted_wear_acceleration": (trusted, "-")}

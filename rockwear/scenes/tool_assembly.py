@@ -1,5 +1,6 @@
 """A rigid tool in a scene, of particles or of facets, in the plane or in space: bodies, contact, wear, shape."""
 from abc import ABC, abstractmethod
+from functools import cached_property
 
 import numpy as np
 from yade import FrictMat, FrictViscoMat
@@ -14,6 +15,7 @@ from rockwear.kernels.checks import require
 from rockwear.kernels.wear_statistics import places
 from rockwear.model.contact import PLANE
 from rockwear.model.facet_tool import write_stl
+from rockwear.model.thermal_body import ParticleBody
 from rockwear.scenes import yade_scene
 from rockwear.scenes.tool_bodies import FacetBodies, SphereBodies, ToolBodies
 
@@ -81,6 +83,11 @@ class ToolAssembly(ABC):
         """The engine that sums up friction within the rock, whose sum in YADE may be one with the tool's."""
         return RockFriction(bonds=bonds, motion=increment, period=period)
 
+    @property
+    @abstractmethod
+    def thermal_body(self):
+        """model.thermal_body.ThermalBody of the tool. Raises ParameterError for a tool that has none."""
+
     @abstractmethod
     def insert(self):
         """Put the new tool into YADE."""
@@ -106,6 +113,11 @@ class ToolAssembly(ABC):
         """{entry: J}: friction at the tool, and what of it has worn it."""
         return {"tool": self.contact.friction,
                 "worn_by": self.wear_engine.work_used + float(self.contact.wearing_work.sum())}
+
+    @property
+    def removed_energy(self):
+        """J of contacts that vanished with what wore away."""
+        return self.wear_engine.contact_energy_removed
 
     # ---- what the folder of a run shows
 
@@ -150,6 +162,10 @@ class ParticleAssembly(ToolAssembly):
         return Wear(contact=self.contact, erosion=self.model.erosion, tool=self.bodies, law=self.wear.law,
                     hardness=self.wear.hardness, temperature=temperature, on_removal=on_removal,
                     volume_unit=self.units.volume, period=period)
+
+    @cached_property
+    def thermal_body(self):
+        return ParticleBody(self.model)
 
     def insert(self):
         self.bodies.add(sorted(self.model.erosion.surface))
@@ -197,17 +213,18 @@ class FacetAssembly(ToolAssembly):
     """A tool of facets, a model.facet_tool.FacetTool: segments in the plane, triangles in space; its vertices move with the
     wear unless reshape is False.
 
-    work_fraction: part of the friction work that wears the tool.
+    work_fraction: part of the friction work that wears the tool; thermal_body: a function that makes the body behind the
+    facets, for heat.
     """
 
     piece = "a layer as deep as its facet"
     loose_material = FrictViscoMat
     put_loop = staticmethod(yade_scene.put_loop_with_facets)
 
-    def __init__(self, *, work_fraction=1.0, reshape=True, **common):
+    def __init__(self, *, thermal_body, work_fraction=1.0, reshape=True, **common):
         super().__init__(**common)
         require(self.sampling_period == 1, "sampling_period", self.sampling_period, "1 for a tool of facets", "steps")
-        self.work_fraction, self.reshape = work_fraction, reshape
+        self.work_fraction, self.reshape, self._thermal_body = work_fraction, reshape, thermal_body
 
     def _make_bodies(self, motion):
         return FacetBodies(self.model, motion)
@@ -230,6 +247,10 @@ class FacetAssembly(ToolAssembly):
             return super().rock_friction(bonds, increment, period)
         return YadeFriction(contact=self.contact, bonds=bonds, motion=increment, period=None)
 
+    @cached_property
+    def thermal_body(self):
+        return self._thermal_body()
+
     def insert(self):
         self.bodies.add(range(self.model.count))
 
@@ -242,6 +263,11 @@ class FacetAssembly(ToolAssembly):
     def volume_balance(self):
         balance, worn = self.model.boundary.volume_balance(), self.wear_engine.volume
         return balance if self.reshape else {**balance, "archard": worn, "shape_kept": worn}
+
+    @property
+    def removed_energy(self):
+        # Less what contacts began with that the new shape caused.
+        return super().removed_energy - self.contact.reshaping_energy
 
     def model_arrays(self):
         tool = self.model

@@ -134,7 +134,7 @@ class Turns(Programme):
         hot, mean = self._hot_and_mean(heat.network)
         return {"tool_temperature_hot": (hot, "K"), "tool_temperature_mean": (mean, "K"),
                 "water_heat": (-heat.network.balance["convected"], "J/m"),
-                "pick_friction_heat": (float(heat.averaged["friction_heat"].sum()), "J/m"),
+                "pick_friction_heat": (float(heat.load.friction_heat.sum()), "J/m"),
                 "pick_heat_worn_away": (self.worn_heat, "J/m")}
 
     def _hot_and_mean(self, network):

@@ -1,14 +1,13 @@
 """Building blocks of scenes: what is put into YADE, and how."""
 import math
 
-import numpy as np
 from yade import (
     Bo1_Facet_Aabb, Bo1_Sphere_Aabb, ForceResetter, FrictMat, FrictViscoMat, Ig2_Facet_Sphere_ScGeom,
     Ig2_Sphere_Sphere_ScGeom, InsertionSortCollider, InteractionLoop, Ip2_FrictMat_FrictMat_FrictPhys,
     Ip2_FrictMat_FrictViscoMat_FrictViscoPhys, Ip2_FrictViscoMat_FrictViscoMat_FrictViscoPhys,
     Ip2_JCFpmMat_JCFpmMat_JCFpmPhys, JCFpmMat, Law2_ScGeom_FrictPhys_CundallStrack,
     Law2_ScGeom_FrictViscoPhys_CundallStrackVisco, Law2_ScGeom_JCFpmPhys_JointedCohesiveFrictionalPM, MatchMaker,
-    NewtonIntegrator, O, Subdomain, log, utils)
+    NewtonIntegrator, O, log, utils)
 
 # It would call it a bug that its lists of bodies are off; see Scene._refresh_bounds.
 log.setLevel("BodyContainer", log.ERROR)
@@ -95,12 +94,6 @@ def _put_engines(bounds, geometry, parameters, laws, damping):
         InteractionLoop(geometry, [Ip2_JCFpmMat_JCFpmMat_JCFpmPhys(cohesiveTresholdIteration=1), *parameters],
                         [Law2_ScGeom_JCFpmPhys_JointedCohesiveFrictionalPM(neverErase=True), *laws]),
         NewtonIntegrator(damping=damping)]
-
-
-def rock_positions(rock):
-    """(n, d) m of the specimen's particles in YADE now, by its one bulk read."""
-    values = np.fromiter(Subdomain().getStateValuesFromIds(list(range(rock.count))), float)
-    return values.reshape(rock.count, 13)[:, :rock.positions.shape[1]]
 
 
 def make_bonds(rock, bonds):
