@@ -9,9 +9,9 @@ The parameters, their defaults and sources are those of rockwear.scenes.heat_ben
 import runpy
 import sys
 
-runpy.run_path(sys.argv[0].replace("heat_benchmarks.py", "find_rockwear.py"))
+runpy.run_path(sys.argv[0].rpartition("heat_benchmarks.py")[0] + "find_rockwear.py")
 
-from rockwear.run import main as run
-from rockwear.scenes.heat_benchmarks import PARAMETERS, HeatBenchmarks
+from rockwear.run.main import main
+from rockwear.scenes.heat_benchmarks import GROUPS, HeatBenchmarks
 
-run.main("heat_benchmarks", PARAMETERS, HeatBenchmarks)
+main("heat_benchmarks", GROUPS, HeatBenchmarks)

@@ -9,9 +9,9 @@ python3 -m calibration.fitting.wear_fit, then look at the test here: --force, --
 import runpy
 import sys
 
-runpy.run_path(sys.argv[0].replace("sliding_wear.py", "find_rockwear.py"))
+runpy.run_path(sys.argv[0].rpartition("sliding_wear.py")[0] + "find_rockwear.py")
 
-from calibration.laboratory.sliding_wear import PARAMETERS, SlidingWear
-from rockwear.run import main as run
+from calibration.laboratory.sliding_wear import GROUPS, SlidingWear
+from rockwear.run.main import main
 
-run.main("sliding_wear", PARAMETERS, SlidingWear)
+main("sliding_wear", GROUPS, SlidingWear)

@@ -8,9 +8,9 @@ The parameters, their defaults and sources are those of calibration.laboratory.u
 import runpy
 import sys
 
-runpy.run_path(sys.argv[0].replace("uniaxial.py", "find_rockwear.py"))
+runpy.run_path(sys.argv[0].rpartition("uniaxial.py")[0] + "find_rockwear.py")
 
-from calibration.laboratory.uniaxial import PARAMETERS, UniaxialTest
-from rockwear.run import main as run
+from calibration.laboratory.uniaxial import GROUPS, UniaxialTest
+from rockwear.run.main import main
 
-run.main("uniaxial", PARAMETERS, UniaxialTest)
+main("uniaxial", GROUPS, UniaxialTest)

@@ -1,92 +1,85 @@
-"""The laboratory wear test (M 6.6, fig. 6.3): a block of tool steel under a known load slides on flat rock."""
+"""The laboratory wear test: a block of tool steel under a known load slides on flat rock [Rojek 2003, 6.6, fig. 6.3]."""
 import math
 from types import SimpleNamespace
 
 import numpy as np
 from scipy.integrate import quad
-from yade import (Bo1_Sphere_Aabb, Bo1_Wall_Aabb, ForceResetter, Ig2_Wall_Sphere_ScGeom, InsertionSortCollider,
-                  InteractionLoop, Ip2_FrictMat_FrictViscoMat_FrictViscoPhys,
-                  Law2_ScGeom_FrictViscoPhys_CundallStrackVisco, NewtonIntegrator, O, utils)
+from yade import (
+    Bo1_Sphere_Aabb, Bo1_Wall_Aabb, ForceResetter, Ig2_Wall_Sphere_ScGeom, InsertionSortCollider, InteractionLoop,
+    Ip2_FrictMat_FrictViscoMat_FrictViscoPhys, Law2_ScGeom_FrictViscoPhys_CundallStrackVisco, NewtonIntegrator, O, utils)
 
-from rockwear.scenes import yade_scene
-from rockwear.scenes.scene import Scene
-from rockwear.scenes.tool_bodies import ToolBodies
-from rockwear.run import vtk
-from rockwear.scenes import cutting
-from rockwear.engines.velocity_increment import VelocityIncrement
-from rockwear.engines.dead_load import DeadLoad
 from rockwear.engines.base import RunEnded
+from rockwear.engines.dead_load import DeadLoad
 from rockwear.engines.recorder import Recorder
 from rockwear.engines.tool_contact import ToolContact
+from rockwear.engines.velocity_increment import VelocityIncrement
 from rockwear.engines.wear import Wear
 from rockwear.kernels.archard import BRINELL, KELVIN, Hardness
 from rockwear.kernels.checks import require
-from rockwear.kernels.erosion import Erosion
+from rockwear.kernels.parameter import Group, Parameter, above_zero, choice, integer, number, speed
 from rockwear.kernels.rigid_motion import Straight
-from rockwear.kernels.wear_laws import wear_law
+from rockwear.kernels.wear_laws import WEAR_LAWS
 from rockwear.model.materials import STEEL
-from rockwear.kernels.parameter import Parameter, above_zero, choice, integer, number
-from rockwear.model.particle_tool import Tool
+from rockwear.model.particle_tool import ParticleTool, Tool
+from rockwear.run import vtk
+from rockwear.scenes import parameters, yade_scene
+from rockwear.scenes.output import Output
+from rockwear.scenes.parts import HARDNESS
+from rockwear.scenes.scene import Scene
+from rockwear.scenes.tool_bodies import ToolBodies
 
-SHARED = ("seed tool_radius_min tool_radius_max tool_kn tool_kt tool_mu hardness_table wear_coefficient wear_law wear_exponent "
-          "wear_modes wear_acceleration removal").split()
-"""Parameters that are those of the cut."""
-
-PARAMETERS = [p for p in cutting.parameters(hardness_table="MET71", wear_coefficient=0.0023, tool_radius_min=0.2e-3,
-                                            tool_radius_max=0.26e-3, wear_acceleration=1000.0) if p.name in SHARED] + [
-    Parameter("force", 885.0, "N", above_zero, "normal force on the block", "M table 6.2"),
-    Parameter("area", 26e-6, "m2", above_zero, "contact surface of the block", "M table 6.2"),
-    Parameter("distance", 100.0, "m", above_zero, "sliding distance in the laboratory", "M table 6.2"),
-    Parameter("velocity", 0.117, "m/s", above_zero, "sliding velocity", "M table 6.2"),
-    Parameter("temperature", 429.15, "K", number(0), "of the block at first", "M table 6.2: 156 deg C"),
+TEST = Group("test", (
+    Parameter("force", 885.0, "N", above_zero, "normal force on the block", "[Rojek 2003, table 6.2]"),
+    Parameter("area", 26e-6, "m2", above_zero, "contact surface of the block", "[Rojek 2003, table 6.2]"),
+    Parameter("distance", 100.0, "m", above_zero, "sliding distance in the laboratory", "[Rojek 2003, table 6.2]"),
+    Parameter("velocity", 0.117, "m/s", speed, "sliding velocity", "[Rojek 2003, table 6.2]"),
+    Parameter("temperature", 429.15, "K", number(0), "of the block at first", "[Rojek 2003, table 6.2]: 156 deg C"),
     Parameter("temperature_rise", 0.0, "K", number(0), "of the block over the whole distance, linear in it"),
     Parameter("block_width", 0.0, "m", number(0), "of the block along the sliding; 0: side of a square of `area`"),
     Parameter("block_height", 6e-3, "m", above_zero, "of the block"),
     Parameter("packing", "random", "", choice("random", "lattice"), "of the block's particles"),
+    Parameter("seed", 1, "", integer(0), "of a random packing"),
+    Parameter("tool_radius_min", 0.2e-3, "m", above_zero, "smallest radius of the block's particles"),
+    Parameter("tool_radius_max", 0.26e-3, "m", above_zero, "largest radius of the block's particles")))
+ACCURACY = Group("accuracy", (
     Parameter("slip_step", 2e-6, "m", above_zero, "sliding in a time step", "ours, see SlidingWear"),
     Parameter("wear_period", 10, "steps", integer(1), "between updates of wear and removal"),
-    Parameter("record_distance", 0.5, "m", above_zero, "laboratory distance between rows of history.csv"),
-]
+    Parameter("record_distance", 0.5, "m", above_zero, "laboratory distance between rows of history.csv")))
+GROUPS = parameters.with_defaults(
+    [TEST, parameters.CONTACT.without("contact_damping"),
+     parameters.WEAR.without("hardness", "hardness_temperature", "wear_tolerance", "tool_temperature"), ACCURACY],
+    hardness_table="MET71", wear_coefficient=0.0023, wear_acceleration=1000.0)
 
 
-class Block(Tool):
-    """A rectangle of tool particles, held along its top."""
+class SquareLattice(ParticleTool):
+    """A rectangle (m) of equal discs in a square lattice, fixed along its top: every disc of a row carries the same load."""
 
-    def _fixed(self):
-        return self.positions[:, 1] > self.vertices[:, 1].max() - 1.5 * self.radii
-
-
-class Lattice(Block):
-    """A rectangle of equal discs in a square lattice: every disc of a row carries the same load."""
-
-    def __init__(self, *, vertices, radius, removal, material):
-        width, height = np.ptp(vertices, axis=0)
+    def __init__(self, *, width, height, radius, removal, density):
         columns = max(2, round(width / (2 * radius)))
         radius = width / (2 * columns)
         rows = max(2, round(height / (2 * radius)))
         index = np.arange(rows * columns).reshape(rows, columns)
         y, x = (radius * (2 * place.ravel() + 1) for place in np.indices(index.shape))
-        self.vertices = np.array([(0, 0), (width, 0), (width, 2 * radius * rows), (0, 2 * radius * rows)])
-        self.positions, self.radii, self.count = np.column_stack([x, y]), np.full(len(x), radius), len(x)
-        self.area, self.material = 4 * radius**2 * len(x), material
-        self.volumes = 4 * self.radii**2
-        self.fixed = self._fixed()
+        vertices = np.array([(0, 0), (width, 0), (width, 2 * radius * rows), (0, 2 * radius * rows)])
+        radii = np.full(len(x), radius)
         pairs = np.concatenate([np.column_stack([index[:-1].ravel(), index[1:].ravel()]),
                                 np.column_stack([index[:, :-1].ravel(), index[:, 1:].ravel()])])
-        self.erosion = Erosion(radii=self.radii, volumes=self.volumes, pairs=pairs, surface=index[0],
-                               fixed=np.flatnonzero(self.fixed), rule=removal)
+        super().__init__(vertices=vertices, positions=np.column_stack([x, y]), radii=radii, area=4 * radius**2 * len(x),
+                         volumes=4 * radii**2, density=density, fixed=y > vertices[:, 1].max() - 1.5 * radii,
+                         surface=np.isin(index.ravel(), index[0]), pairs=pairs, removal=removal)
 
 
 class SlidingWear(Scene):
-    """A block of particles led over flat rock under a known load. values: {name: value} of all PARAMETERS.
+    """A block of particles moved over flat rock under a known load. values: {name: value} of all GROUPS.
 
     The plane of the simulation is a slice through the block: all forces and volumes count per metre of thickness,
-    pressure and depth are those of the laboratory. The 100 m of M take 855 s; here the wear coefficient is scaled up by
-    `acceleration` and the distance down by the same factor (R's first rule).
+    pressure and depth are those of the laboratory. The 100 m of [Rojek 2003] take 855 s; here the wear coefficient is scaled up by
+    `acceleration` and the distance down by the same factor (the first rule of [Rocky]).
 
-    The block carries the load exactly, see engines.press. What its k is off by is what the contacts dissipate less than
+    The block carries the load exactly, see engines.dead_load. What its k is off by is what the contacts dissipate less than
     mu F s: each that has just closed slips elastically by mu F / kt before it is at Coulomb's limit, and the more
-    wear comes on a metre, the more contacts do (R's second rule). M's first test, 42 particles removed:
+    wear comes on a metre, the more contacts do (its second rule). The first test of
+    [Rojek 2003, table 6.2], 42 particles removed:
 
         acceleration          500     1000     2000     7000    50000
         k returned, off by  -0.027   -0.055   -0.11     -0.38     -2.5  %
@@ -96,20 +89,17 @@ class SlidingWear(Scene):
     a lattice has the nominal pressure.
     """
 
-    looking = {"tool_contact"}
-
     def __init__(self, values):
         self.values = values
         v = self.v = SimpleNamespace(**values)
         require(v.tool_radius_max >= v.tool_radius_min, "tool_radius_max", v.tool_radius_max,
                 f"at least tool_radius_min = {v.tool_radius_min:g}", "m")
-        table = cutting.HARDNESS[v.hardness_table]
+        table = HARDNESS[v.hardness_table]
         low, high = table.limits
         require(low <= v.temperature <= high, "temperature", v.temperature,
                 f"inside the hardness table of {v.hardness_table}, {low:g} to {high:g}", "K")
         self.hardness = Hardness(table.kelvin - KELVIN, table.pascal / BRINELL)
-        self.law = wear_law(v.wear_law, k=v.wear_coefficient, mu=v.tool_mu, exponent=v.wear_exponent,
-                            modes=v.wear_modes)
+        self.law = WEAR_LAWS[v.wear_law].from_values(values, mu=v.tool_mu)
         require(v.wear_acceleration > 0, "wear_acceleration", v.wear_acceleration, "greater than 0 for a block that is to wear")
         width = v.block_width or math.sqrt(v.area)
         self.pressure, self.load = v.force / v.area, v.force / v.area * width
@@ -118,16 +108,18 @@ class SlidingWear(Scene):
                 "would flow", "N")
         outline = np.array([(0, 0), (width, 0), (width, v.block_height), (0, v.block_height)])
         if v.packing == "lattice":
-            self.tool = Lattice(vertices=outline, radius=v.tool_radius_max, removal=v.removal, material=STEEL)
+            self.tool = SquareLattice(width=width, height=v.block_height, radius=v.tool_radius_max, removal=v.removal,
+                                      density=STEEL.density)
         else:
-            self.tool = Block(vertices=outline, radius_min=v.tool_radius_min, radius_max=v.tool_radius_max, seed=v.seed,
-                              removal=v.removal, material=STEEL)
+            self.tool = Tool(vertices=outline, radius_min=v.tool_radius_min, radius_max=v.tool_radius_max, seed=v.seed,
+                             removal=v.removal, density=STEEL.density, shank="top")
         self.width = width
         require(v.slip_step < 0.01 * v.distance / v.wear_acceleration, "slip_step", v.slip_step,
                 f"below a hundredth of the simulated distance, {v.distance / v.wear_acceleration:g}", "m")
         self.time_step = v.slip_step / v.velocity
         self.rock = SimpleNamespace(pairs=())
         self._plan({"sliding": v.distance / v.wear_acceleration / v.velocity})
+        self.output = SlidingWearOutput(self)
 
     # ---- YADE
 
@@ -161,15 +153,11 @@ class SlidingWear(Scene):
         self.contact = ToolContact(tool=self.bodies, motion=flat, needs=law.needs)
         self.wear = Wear(contact=self.contact, erosion=tool.erosion, tool=self.bodies, law=law, hardness=self.hardness,
                          temperature=lambda: np.full(tool.count, self.temperature(self.slid)),
-                         on_removal=self._on_removal)
-        self.press = DeadLoad(bodies=self.bodies, load=self.load, kn=v.tool_kn)
-        self.recorder = Recorder([self._log])
+                         on_removal=self._on_removal, period=v.wear_period)
+        self.press = DeadLoad(bodies=self.bodies, load=self.load, kn=v.tool_kn, period=None)
+        row = max(1, round(v.record_distance / v.wear_acceleration / v.slip_step))
+        self.recorder = Recorder([self.output.log], period=row)
         self._register(self.contact, self.wear, self.recorder, self.press)
-
-    def _periods(self):
-        v = self.v
-        return {"tool_contact": 1, "wear": v.wear_period, "dead_load": None,
-                "recorder": max(1, round(v.record_distance / v.wear_acceleration / v.slip_step))}
 
     def _connect(self):
         super()._connect()
@@ -181,7 +169,7 @@ class SlidingWear(Scene):
         self.press.act()
 
     def canonical(self):
-        self._fresh_bounds()
+        self._refresh_bounds()
         self.contact.find_contacts()
 
     def end_stage(self, folder):
@@ -219,65 +207,68 @@ class SlidingWear(Scene):
         """Worn depth (m), worn volume over the block's surface."""
         return self.tool.erosion.archard_volume / self.width
 
-    def _log(self):
-        impulse, elapsed = self.contact.take_impulse(), self.recorder.elapsed()
+
+class SlidingWearOutput(Output):
+    """What the folder of a sliding wear test shows."""
+
+    def log(self):
+        """{name: (value, unit)} of the history."""
+        impulse, elapsed = self.scene.contact.take_impulse(), self.scene.recorder.elapsed()
         force = impulse / elapsed if elapsed else impulse
-        return {"time": (self.time, "s"), "stage": (self.stage, "-"), "distance": (self.slid, "m"),
-                "worn_depth": (self.depth, "m"), "descent": (self.press.descent, "m"),
-                "expected_depth": (self.expected_depth(self.slid), "m"),
-                "temperature": (self.temperature(self.slid), "K"), "normal_force": (force[1], "N/m"),
+        return {"time": (self.scene.time, "s"), "stage": (self.scene.stage, "-"), "distance": (self.scene.slid, "m"),
+                "worn_depth": (self.scene.depth, "m"), "descent": (self.scene.press.descent, "m"),
+                "expected_depth": (self.scene.expected_depth(self.scene.slid), "m"),
+                "temperature": (self.scene.temperature(self.scene.slid), "K"), "normal_force": (force[1], "N/m"),
                 "friction_force": (-force[0], "N/m")}
 
     def results(self):
         """{name: (value, unit)} of the run; k_returned is what the laboratory would find from force, way and depth."""
-        v, erosion = self.v, self.tool.erosion
-        expected = self.expected_depth(self.slid)
-        ratio = self.depth / expected if expected else math.nan
+        v, erosion = self.scene.v, self.scene.tool.erosion
+        expected = self.scene.expected_depth(self.scene.slid)
+        ratio = self.scene.depth / expected if expected else math.nan
         given = {} if v.wear_law == "modes" else {"k_given": (v.wear_coefficient, "-"),
                                                   "k_returned": (v.wear_coefficient * ratio, "-")}
         return {**given, "k_deviation": (ratio - 1, "-"), "expected_depth": (expected, "m"),
-                "worn_depth": (self.depth, "m"), "descent": (self.press.descent, "m"),
-                "distance": (self.slid, "m"), "simulated_distance": (self.slid / v.wear_acceleration, "m"),
-                "simulated_time": (self.time, "s"), "pressure": (self.pressure, "Pa"), "block_width": (self.width, "m"),
-                "temperature_end": (self.temperature(self.slid), "K"), "mass_lost": (erosion.mass_fraction_lost, "-"),
-                "particles_removed": (int(np.sum(~erosion.alive)), "-"), "tool_particles": (self.tool.count, "-")}
+                "worn_depth": (self.scene.depth, "m"), "descent": (self.scene.press.descent, "m"),
+                "distance": (self.scene.slid, "m"), "simulated_distance": (self.scene.slid / v.wear_acceleration, "m"),
+                "simulated_time": (self.scene.time, "s"), "pressure": (self.scene.pressure, "Pa"), "block_width": (self.scene.width, "m"),
+                "temperature_end": (self.scene.temperature(self.scene.slid), "K"), "mass_lost": (erosion.mass_fraction_lost, "-"),
+                "particles_removed": (int(np.sum(~erosion.alive)), "-"), "tool_particles": (self.scene.tool.count, "-")}
 
     def warnings(self):
-        return self.wear.warnings()
+        return self.scene.wear.warnings()
 
     def balances(self):
         """Friction: mu F s of the known load, and what became of it; mass: Archard's volume, and where it is."""
-        contact, erosion = self.contact, self.tool.erosion
-        expected = self.v.tool_mu * self.load * self.slid / self.v.wear_acceleration
+        contact, erosion = self.scene.contact, self.scene.tool.erosion
+        expected = self.scene.v.tool_mu * self.scene.load * self.scene.slid / self.scene.v.wear_acceleration
         friction = {"mu_load_distance": expected, "drag_work": contact.work_done, "tool": contact.friction,
-                    "worn_by": self.wear.work_used + float(contact.wearing_work.sum()),
+                    "worn_by": self.scene.wear.work_used + float(contact.wearing_work.sum()),
                     "not_dissipated": expected - contact.friction}
         mass = {name: value * STEEL.density for name, value in erosion.volume_balance().items()}
-        return {"friction": (friction, "J/m"), "mass": ({"initial": self.tool.area * STEEL.density, **mass}, "kg/m")}
-
-    # ---- what a run's folder shows
+        return {"friction": (friction, "J/m"), "mass": ({"initial": self.scene.tool.area * STEEL.density, **mass}, "kg/m")}
 
     def model(self):
         """Arrays that stay the same all through a run."""
-        tool = self.tool
+        tool = self.scene.tool
         return {"block_positions": tool.positions, "block_radii": tool.radii, "outline": tool.vertices}
 
     def snapshot(self):
         """Arrays that show the scene now."""
-        self.bodies.connect()
-        erosion = self.tool.erosion
-        return {"time": self.time, "stage": self.stage, "offset": self.bodies.pose.offset, "alive": erosion.alive,
-                "worn_depth": erosion.stored / (2 * self.tool.radii)}
+        self.scene.bodies.connect()
+        erosion = self.scene.tool.erosion
+        return {"time": self.scene.time, "stage": self.scene.stage, "offset": self.scene.bodies.pose.offset, "alive": erosion.alive,
+                "worn_depth": erosion.stored / (2 * self.scene.tool.radii)}
 
     def write_vtk(self, folder, number):
         """tool.NNNN.vtk: diameter, worn depth."""
-        shot, alive = self.snapshot(), self.tool.erosion.alive
-        vtk.write(folder / f"tool.{number:04d}.vtk", self.tool.positions[alive] + shot["offset"],
-                  {"diameter": 2 * self.tool.radii[alive], "worn_depth": shot["worn_depth"][alive]})
+        shot, alive = self.snapshot(), self.scene.tool.erosion.alive
+        vtk.write(folder / f"tool.{number:04d}.vtk", self.scene.tool.positions[alive] + shot["offset"],
+                  {"diameter": 2 * self.scene.tool.radii[alive], "worn_depth": shot["worn_depth"][alive]})
 
     def tables(self):
         return {}
 
     def progress(self):
         """A few words on how it stands."""
-        return f"{self.slid:.1f} m stand for, {1e3 * self.depth:.3f} mm worn"
+        return f"{self.scene.slid:.1f} m stand for, {1e3 * self.scene.depth:.3f} mm worn"

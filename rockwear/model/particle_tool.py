@@ -116,13 +116,14 @@ class LayeredTool(ParticleTool):
         vertices = np.asarray(vertices, float)
         layers = int(positive("breadth", breadth, "m") / (2 * radius) + 1e-9)
         require(layers > 1, "breadth", breadth, f"at least two particles, {4 * radius:g}", "m")
-        layer = fill(vertices, radius_min=radius, radius_max=radius, seed=seed)["positions"]
+        filled = fill(vertices, radius_min=radius, radius_max=radius, seed=seed)
+        layer = filled["positions"]
         self.breadth, self.layers, self.section = 2 * radius * layers, layers, cells(layer, polygon=vertices)
         number, one = np.arange(layers * len(layer)), len(layer)
         pairs = np.vstack([*(self.section.edges + one * k for k in range(layers)),
                            np.column_stack([number[:-one], number[one:]])])
         outermost = (number < one) | (number >= len(number) - one) | np.tile(self.section.at_walls, layers)
-        positions, radii = _stack(layer, layers, radius), np.full(len(number), float(radius))
+        positions, radii = _stack(layer, layers, filled["radii"][0]), np.tile(filled["radii"], layers)
         area = outline.area(vertices) * self.breadth
         super().__init__(vertices=vertices, positions=positions, radii=radii, area=area,
                          volumes=np.full(len(number), area / len(number)), density=density,

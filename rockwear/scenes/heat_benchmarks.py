@@ -9,19 +9,19 @@ from types import SimpleNamespace
 import numpy as np
 from yade import O
 
-from rockwear.engines import base
 from rockwear.scenes import yade_scene
+from rockwear.scenes.output import Output
 from rockwear.scenes.scene import Scene
 from rockwear.run import vtk
 from rockwear.engines.bonds import Bonds
 from rockwear.engines.conduction import Conduction
 from rockwear.engines.recorder import Recorder
 from rockwear.kernels import analytic
-from rockwear.kernels.bond_laws import linear_law
+from rockwear.kernels.bond_laws import ElasticBrittle
 from rockwear.kernels.voronoi import among, conducting
 from rockwear.kernels.conduction import PATHS, HeatNetwork, calibrated_conductance, paths
 from rockwear.kernels.checks import require
-from rockwear.kernels.parameter import Parameter, above_zero, choice, integer, number
+from rockwear.kernels.parameter import Group, Parameter, above_zero, choice, integer, number
 from rockwear.model.rock import Arranged, Specimen
 
 Benchmark = namedtuple("Benchmark", "title depth material load instants")
@@ -39,10 +39,10 @@ BENCHMARKS = {
 }
 PACKINGS = "random", "square", "triangular"
 
-NO_LAW = linear_law("brittle", kn=1.0, kt=1.0, Rn=1.0, Rt=1.0, H=1.0, mu=0.0)
+NO_LAW = ElasticBrittle(kn=1.0, kt=1.0, Rn=1.0, Rt=1.0, mu=0.0)
 """Of bonds that are never strained."""
 
-PARAMETERS = [
+GROUPS = [Group("benchmark", (
     Parameter("benchmark", "all", "", choice("all", *BENCHMARKS), "of M 7.6", "M 7.6"),
     Parameter("packing", "all", "", choice("all", *PACKINGS), "of the discs"),
     Parameter("across", 80, "", integer(16), "mean diameters across the depth: 80 make about 1800 discs"),
@@ -53,8 +53,7 @@ PARAMETERS = [
     Parameter("seed", 1, "", integer(0), "of the random packing"),
     Parameter("bond_conductance", "voronoi", "", choice(*PATHS), "between particles: by the faces of their Voronoi cells; "
               "one value fitted to the packing; or a bar between two centres, or half of it", "ours; ours; P 64-65; M 11.1"),
-    Parameter("step_fraction", 0.5, "", above_zero, "heat step over the stable one, at most 1", "calibration/benchmarks/heat.py"),
-]
+    Parameter("step_fraction", 0.5, "", above_zero, "heat step over the stable one, at most 1", "calibration/benchmarks/heat.py")))]
 
 Case = namedtuple("Case", "benchmark packing across specimen network step")
 """One benchmark on one specimen of so many diameters across: its HeatNetwork at t = 0 and its longest heat step, s."""
@@ -107,7 +106,7 @@ def network(name, rock, model):
 
 
 class HeatBenchmarks(Scene):
-    """Cases one after the other, a stage an instant. values: {name: value} of all PARAMETERS.
+    """Cases one after the other, a stage an instant. values: {name: value} of all GROUPS.
 
     The discs and their bonds are in YADE, at rest: its loop holds nothing but the visits of the heat.
     """
@@ -127,6 +126,7 @@ class HeatBenchmarks(Scene):
         self.stages = [(case.benchmark, steps) for case, _, steps, _ in self.plan]
         self.stage, self.clock, self.chunk = 0, 0.0, 10**6
         self.errors, self.case_balances = np.full((len(self.plan), 2), np.nan), np.zeros((len(self.cases), 3))
+        self.output = BenchmarkOutput(self)
         self._stand()
 
     def _add(self, name, packing, across):
@@ -151,7 +151,7 @@ class HeatBenchmarks(Scene):
         O.reset()
         yade_scene.put_rock_materials(mu=0.0)
         yade_scene.put_rock(self.rock)
-        yade_scene.put_loop(kn=1.0, kt=1.0, mu=0.0)
+        yade_scene.put_loop(rock=NO_LAW)
         self._make_engines()
         bonds = Bonds(pairs=self.rock.pairs, law=NO_LAW, clock=lambda: 0.0)
         yade_scene.make_bonds(self.rock, bonds)
@@ -163,7 +163,7 @@ class HeatBenchmarks(Scene):
 
     def _make_engines(self):
         self.heat = Conduction(network=self.case.network, step=self.case.step)
-        recorder = Recorder([self._log])
+        recorder = Recorder([self.output.log], period=max(1, self.stages[self.stage][1] // 10))
         if hasattr(self, "recorder"):
             recorder.restore(self.recorder.state())
         self.recorder = recorder
@@ -177,10 +177,10 @@ class HeatBenchmarks(Scene):
         self.heat.network.rewire(edges=edges[left], conductance=conductance[left])
 
     def _insert_engines(self):
-        O.dt = self.time_step
-        O.engines = base.runners({"heat": 1, "recorder": max(1, self.stages[self.stage][1] // 10)})
-        self._connect()
-        self.first_iteration = O.iter
+        # Nothing moves: YADE's own engines have nothing to do.
+        O.engines = O.engines[-1:]
+        super()._insert_engines()
+        O.engines = O.engines[1:]
 
     def canonical(self):
         """Let the last step's heat pass. (Nothing moves: every state is one that a loaded scene has too.)"""
@@ -212,29 +212,32 @@ class HeatBenchmarks(Scene):
         super().restore(state, directory, folder)
         self.errors, self.case_balances = state["errors"].copy(), state["balances"].copy()
 
-    # ---- what a run's folder shows
-
     def expected(self):
         """(n,) the exact temperature at the discs' centres at the present instant."""
         return exact(self.case.benchmark, self.rock.positions[:, 0], self.instant)
 
-    def _log(self):
-        temperature = self.heat.network.temperature
-        return {"time": (self.time, "s"), "stage": (self.stage, "-"), "temperature_max": (temperature.max(), "-"),
-                "heat_content": (self.heat.network.heat_content, "-")}
+
+class BenchmarkOutput(Output):
+    """What the folder of heat benchmarks shows."""
+
+    def log(self):
+        """{name: (value, unit)} of the history."""
+        temperature = self.scene.heat.network.temperature
+        return {"time": (self.scene.time, "s"), "stage": (self.scene.stage, "-"), "temperature_max": (temperature.max(), "-"),
+                "heat_content": (self.scene.heat.network.heat_content, "-")}
 
     def _of(self, case):
         """(instants, 2) greatest and root mean square error of a case, parts of the temperature range."""
-        return self.errors[[k for k, planned in enumerate(self.plan) if planned[0] is case]]
+        return self.scene.errors[[k for k, planned in enumerate(self.scene.plan) if planned[0] is case]]
 
     def results(self):
         """{name: (value, unit)}: errors as parts of the range at their instant, and orders over the resolutions."""
-        found, finest = {}, [case for case in self.cases if case.across == self.v.across]
+        found, finest = {}, [case for case in self.scene.cases if case.across == self.scene.v.across]
         for case in finest:
             errors, name = self._of(case), f"{case.benchmark}_{case.packing}"
             found[f"{name}_largest_error"] = float(errors[:, 0].max()), "-"
             found[f"{name}_rms_error"] = float(errors[:, 1].max()), "-"
-            same = [other for other in self.cases if (other.benchmark, other.packing) == case[:2]]
+            same = [other for other in self.scene.cases if (other.benchmark, other.packing) == case[:2]]
             if len(same) > 1:
                 rms = [self._of(other)[-1, 1] for other in same]
                 order = -np.polyfit(np.log([other.across for other in same]), np.log(rms), 1)[0]
@@ -245,37 +248,37 @@ class HeatBenchmarks(Scene):
     def tables(self):
         """errors.csv: every case and instant, benchmarks and packings by their numbers in BENCHMARKS and PACKINGS."""
         rows = [(list(BENCHMARKS).index(case.benchmark), PACKINGS.index(case.packing), case.across, case.specimen.count,
-                 instant, steps, *error) for (case, instant, steps, _), error in zip(self.plan, self.errors)]
+                 instant, steps, *error) for (case, instant, steps, _), error in zip(self.scene.plan, self.scene.errors)]
         header = "benchmark packing across discs instant steps largest_error rms_error".split()
         return {"errors.csv": ([f"{name} [{'s' if name == 'instant' else '-'}]" for name in header], rows)}
 
     def balances(self):
         """The heat book, sum of all cases: generated, through the faces, stored, and what does not add up."""
-        generated, through, residual = self.case_balances.sum(axis=0)
+        generated, through, residual = self.scene.case_balances.sum(axis=0)
         return {"heat": ({"generated": generated, "through_faces": through, "stored": generated + through + residual,
                           "residual": residual}, "-")}
 
     def model(self):
         """Arrays that stay the same all through a run: of each case, and where a stage stands in it."""
-        arrays = {"heat_cases": np.array([f"{c.benchmark}/{c.packing}/{c.across}" for c in self.cases]),
-                  "stage_case": np.array([self.cases.index(case) for case, *_ in self.plan]),
-                  "stage_instant": np.array([instant for _, instant, *_ in self.plan]),
-                  "stage_steps": np.array([steps for _, _, steps, _ in self.plan])}
-        for k, case in enumerate(self.cases):
+        arrays = {"heat_cases": np.array([f"{c.benchmark}/{c.packing}/{c.across}" for c in self.scene.cases]),
+                  "stage_case": np.array([self.scene.cases.index(case) for case, *_ in self.scene.plan]),
+                  "stage_instant": np.array([instant for _, instant, *_ in self.scene.plan]),
+                  "stage_steps": np.array([steps for _, _, steps, _ in self.scene.plan])}
+        for k, case in enumerate(self.scene.cases):
             arrays[f"positions_{k}"], arrays[f"radii_{k}"] = case.specimen.positions, case.specimen.radii
         return arrays
 
     def snapshot(self):
         """Arrays that show the scene now; `exact` is that of the instant to which the stage approach_steps."""
-        return {"time": self.time, "stage": min(self.stage, len(self.plan) - 1),
-                "temperature": self.heat.network.temperature, "exact": self.expected()}
+        return {"time": self.scene.time, "stage": min(self.scene.stage, len(self.scene.plan) - 1),
+                "temperature": self.scene.heat.network.temperature, "exact": self.scene.expected()}
 
     def write_vtk(self, folder, number):
         """rock.NNNN.vtk: diameter, temperature, exact temperature."""
         shot = self.snapshot()
-        vtk.write(folder / f"rock.{number:04d}.vtk", self.rock.positions,
-                  {"diameter": 2 * self.rock.radii, "temperature": shot["temperature"], "exact": shot["exact"]})
+        vtk.write(folder / f"rock.{number:04d}.vtk", self.scene.rock.positions,
+                  {"diameter": 2 * self.scene.rock.radii, "temperature": shot["temperature"], "exact": shot["exact"]})
 
     def progress(self):
         """A few words on how it stands."""
-        return f"{self.case.packing}, {self.case.across} across, {self.rock.count} discs"
+        return f"{self.scene.case.packing}, {self.scene.case.across} across, {self.scene.rock.count} discs"
