@@ -13,24 +13,24 @@ from rockwear.kernels.worn_boundary import Folded, STEPS, STRIDE, WornAway
 
 
 class FacetWear(WearEngine):
-    """Wear of a tool of facets: what its contacts wear off each facet becomes a motion of the vertices (R 2.5).
+    """Wear of a tool of facets: the volume worn off each facet becomes a motion of the vertices [Rocky, sec. 2.5].
 
-    boundary: kernels.worn_boundary.WornBoundary; tool: its bodies; hardness: Pa; work_fraction: the part of the friction
-    work that counts as the tool's (R 2-53 takes one half, Archard's law all of it); reshape: False leaves the shape as it
-    is, and only `worn` grows; acceleration: the law's, for what is said of it. `limit` is a layer of a facet as deep as
-    the new facet's smallest altitude: what a particle of that size would be.
+    boundary: kernels.worn_boundary.WornBoundary; tool: its bodies; work_fraction: the part of the friction work that
+    counts as the tool's ([Rocky, eq. 2-53] takes one half, Archard's law all of it); reshape: False keeps the shape,
+    and only `worn` grows; wear_acceleration: the law's, for messages. `limit` is a layer of a facet as deep as the
+    initial facet's smallest altitude: what a particle of that size would be.
 
-    `recession` is the mean over the worn volume of what a facet recedes over the way slid on it, dw/ds of Archard's law.
-    Where it is not small, a face recedes from what presses on it: the contact is relieved, and wear is no longer
-    proportional to the acceleration, R's first rule. A facet given to another part of the surface by remeshing counts for
-    the place it lies on then. Raises RunEnded where a facet would recede further in one update than vertices can go,
-    where the boundary would fold, and where a particle has come to the inner side of a facet.
+    `recession` is the mean over the worn volume of the depth that a facet recedes over the distance slid on it, dw/ds
+    of Archard's law. Where it is not small, a face recedes from what presses on it: the contact is relieved, and wear
+    is no longer proportional to the acceleration, the first rule of [Rocky]. A facet that remeshing moves to another
+    part of the surface then counts for the place where it lies. Raises RunEnded where a facet would recede further in
+    one update than vertices can go, where the boundary would fold, and where a particle lies at the inner side of a
+    facet.
     """
 
-    def __init__(self, *, contact, boundary, tool, law, hardness, temperature, work_fraction=1.0, reshape=True, wear_acceleration=1.0,
-                 **common):
-        super().__init__(contact=contact, law=law, count=len(boundary.facets), **common)
-        self.boundary, self.tool, self.hardness, self.temperature = boundary, tool, hardness, temperature
+    def __init__(self, *, boundary, tool, work_fraction=1.0, reshape=True, wear_acceleration=1.0, **common):
+        super().__init__(count=len(boundary.facets), **common)
+        self.boundary, self.tool = boundary, tool
         self.work_fraction, self.reshape, self.wear_acceleration = work_fraction, reshape, wear_acceleration
         self.worn = np.zeros(len(boundary.facets))
         self.receded = 0.0
@@ -46,7 +46,7 @@ class FacetWear(WearEngine):
         if slid is None:
             return
         areas = self._areas()
-        volume = self.work_fraction * self.law.volume(slid, self.hardness.nearest(self.temperature()), areas)
+        volume = self.work_fraction * self.law.volume(slid, self.hardness_now(slid), areas)
         self.worn += self.at_places(volume)
         if not self.reshape:
             return
@@ -71,13 +71,14 @@ class FacetWear(WearEngine):
         return np.bincount(self.boundary.place, values, len(self.worn))
 
     def _check_speed(self, depth):
-        # What falls on a facet that has crowded, those around it take over.
+        # The facets around a crowded one take over what falls on it.
         now = altitudes(self.boundary.vertices, self.boundary.facets)
         size = np.maximum(now, CROWDED * self.boundary.size)
         depth = depth * now / size
         worst = int(np.argmax(depth / size))
         if depth[worst] > STEPS * STRIDE * size[worst]:
-            raise self._too_fast(f"a facet of {1e3 * size[worst]:.3g} mm would recede by {1e3 * depth[worst]:.3g} mm at once")
+            raise self._too_fast(f"a facet of {1e3 * size[worst]:.3g} mm would recede by {1e3 * depth[worst]:.3g} mm "
+                                 "at once")
 
     def _check_sides(self):
         place = self.contact.contact_inside_tool()
@@ -85,8 +86,8 @@ class FacetWear(WearEngine):
             raise self._too_fast(f"a rock particle has come to lie inside of it at {place}")
 
     def _too_fast(self, words):
-        return RunEnded(f"the tool's shape cannot follow its wear at t = {O.time:g} s: {words}; lower acceleration = "
-                        f"{self.wear_acceleration:g}", False)
+        return RunEnded(f"the tool's shape cannot follow its wear at t = {O.time:g} s: {words}; "
+                        f"lower wear_acceleration = {self.wear_acceleration:g}", False)
 
     @property
     def recession(self):

@@ -133,7 +133,7 @@ class Heat(Engine):
             self.find_surfaces()
 
     def _rock_now(self):
-        """Rock particles in contact conduct, and those across closed pores; later contacts with the mean conductance."""
+        """Rock particles in contact conduct, and those across closed pores; new contacts with the mean conductance."""
         pairs, conductance = self.rock_paths
         loose = np.sort(np.array([(i.id1, i.id2) for i in self.rock_friction.contacts], int).reshape(-1, 2), axis=1)
         touching = np.concatenate([self.bonds.pairs[self.bonds.in_contact()], loose])

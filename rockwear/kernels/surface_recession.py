@@ -26,8 +26,8 @@ def receded(*, temperature, capacity, adjacent, leaving, share):
     layer behind them, and so on inwards: on a chain the field moves by one particle for `share` = 1. No layer becomes
     hotter than the one in front of it was (of several neighbours there, the coldest), and the heat given is at most
     what the leaving particle holds above the coldest one. Where neighbouring columns share the particles below, the
-    first layers are served first: heat and surface temperature are kept, and the profile behind is steeper than it was, until
-    conduction has evened it out.
+    first layers are served first: heat and surface temperature are kept, and the profile behind is steeper than it was,
+    until conduction has evened it out.
 
     temperature (n,) K; capacity (n,) J/K, 0 for particles that are gone; adjacent: by `neighbours`. The sum of
     capacity * temperature is kept.

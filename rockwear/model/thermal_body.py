@@ -87,7 +87,7 @@ class ThermalBody(ABC):
 
 
 class ParticleBody(ThermalBody):
-    """Thermal body of a tool of particles, which are its nodes. tool: a model.particle_tool.Tool, LayeredTool in space."""
+    """Thermal body of a tool of particles, which are its nodes: of a model.particle_tool.Tool or LayeredTool."""
 
     def __init__(self, tool):
         super().__init__(positions=tool.positions, volumes=tool.volumes, fixed=tool.fixed)

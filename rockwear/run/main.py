@@ -1,4 +1,4 @@
-"""A run: parameters in, one folder out, nothing lost on the way."""
+"""A run: reads the parameters, runs the scene with checkpoints, and writes one folder."""
 import json
 import math
 import os
@@ -14,48 +14,51 @@ import numpy as np
 import yade
 
 from rockwear import __version__, report
-from rockwear.run import parameters
-from rockwear.run import checkpoint
+from rockwear.run import checkpoint, parameters, servers
 from rockwear.engines.base import RunEnded
 from rockwear.engines.recorder import write_table
 from rockwear.kernels.checks import ParameterError, require
 from rockwear.kernels.parameter import Group, Parameter, above_zero, file, flag, text
 
-COMMON = [
+COMMON = Group("output", (
     Parameter("out", "", "", text, "folder of the results; out/SCENE when empty, a subfolder a row in a batch"),
-    Parameter("resume", False, "", flag, "go on from the checkpoint in the folder"),
+    Parameter("resume", False, "", flag, "resume from the checkpoint in the folder"),
     Parameter("checkpoint_interval", 60.0, "s", above_zero, "wall time between checkpoints"),
     Parameter("snapshot_period", 4e-4, "s", above_zero, "simulated time between the pictures of the report"),
     Parameter("report", True, "", flag, "write report.html and its figures at the end"),
     Parameter("vtk", False, "", flag, "write each snapshot for ParaView too"),
-]
-OURS = "snapshots", "checkpoint", "figures", "vtk"
+))
+FOLDERS = "snapshots", "checkpoint", "figures", "vtk"
 """Folders that a new run empties."""
+FILES = "summary.json", "history.csv", "cracks.csv", "turns.csv", "wear_profile.csv", "tool.stl", "report.html"
+"""Files that a new run removes."""
 MOST_STEPS = 1e10
 """In all: more than a month of computing."""
+DECISIVE_UNITS = {"N/m", "kg/m3", "m", "m/s", "s"}
+"""Units of the parameters that the number of steps depends on."""
 NOT_IDENTITY = {"out", "resume", "checkpoint_interval", "report", "vtk"}
 
 
 def main(name, declared, make_scene):
-    """Run the scene `name` with the declared parameters; make_scene(values) -> scene. Ends the process.
+    """Run the scene `name`. Ends the process.
 
+    declared: Groups, or single Parameters; those of COMMON are added; make_scene(values) -> scene.
     Exit code 0: done; 2: a parameter, a folder or a checkpoint that cannot be used, said in one line before the first
     step; 1: the run ended badly, said in one line, the last checkpoint kept; 128 + n: stopped by signal n, resumable.
     """
-    declared = [p for group in declared for p in (group if isinstance(group, Group) else [group])]
-    names = {parameter.name for parameter in declared}
-    declared = [*declared, *(parameter for parameter in COMMON if parameter.name not in names)]
+    began = time.time()
+    servers.close()
+    declared = [*declared, COMMON]
     if "--help" in sys.argv:
-        print(f"yade -n -x {sys.argv[0]} [--name value ...]")
         parameters.describe(declared)
         _leave(0)
-    began = time.time()
     try:
         values = parameters.read(declared, sys.argv[1:])
         folder, identity = _folder(name, values, declared), _identity(name, values, declared)
         if values["resume"]:
             checkpoint.load(folder / "checkpoint", identity)
         scene = make_scene(values)
+        _check_steps(scene, values, declared)
         run = Run(name, scene, values, folder, identity, began)
         run.prepare()
     except ParameterError as error:
@@ -71,15 +74,28 @@ def _leave(code):
     os._exit(code)
 
 
+def _check_steps(scene, values, declared):
+    """Raise ParameterError where the scene has too many steps. It names what differs most from its default."""
+    steps = float(sum(steps for _, steps in scene.stages))
+    factors = {}
+    for name, parameter in parameters.flat(declared).items():
+        value, default = values[name], parameter.default
+        if parameter.unit in DECISIVE_UNITS and isinstance(default, float) and value * default > 0:
+            factors[f"{name} = {value:g} {parameter.unit}"] = abs(math.log(value / default))
+    causes = [cause for cause in sorted(factors, key=factors.get, reverse=True)[:3] if factors[cause] > 1]
+    require(steps <= MOST_STEPS, "steps", steps, f"at most {MOST_STEPS:g} of {scene.time_step:g} s in all: change "
+            + (" or ".join(causes) or "the times of the scene"))
+
+
 def _files(values, declared):
     """{parameter: Path} of the files that are read."""
-    files = {p.name: Path(values[p.name]) for p in declared if p.rule is file and values[p.name]}
-    return {name: path for name, path in files.items() if path.is_file()}
+    names = [name for name, p in parameters.flat(declared).items() if p.rule is file and values[name]]
+    return {name: Path(values[name]) for name in names if Path(values[name]).is_file()}
 
 
 def _identity(name, values, declared):
-    """What a run must share with the checkpoint that it goes on from: the contents of its files too."""
-    return {"scene": name, "yade": yade.config.version, "rockwear": __version__,
+    """What a run must share with the checkpoint that it resumes: the contents of its files too."""
+    return {"rockwear version": __version__, "YADE version": yade.config.version, "scene": name,
             "parameters": {k: v for k, v in values.items() if k not in NOT_IDENTITY},
             "files": {name: checkpoint.digest(path) for name, path in _files(values, declared).items()}}
 
@@ -101,15 +117,15 @@ def _folder(name, values, declared):
     for key, path in _files(values, declared).items():
         require(folder.resolve() not in path.resolve().parents, key, str(path),
                 f"outside of {folder}, where this run replaces what is there")
-    # A run replaces an earlier one in its folder, but nothing that is not a run's.
-    foreign = [old for old in (*OURS, "report.html") if (folder / old).exists()]
+    # A run replaces an earlier run in its folder, but no files of another origin.
+    foreign = [old for old in (*FOLDERS, "report.html") if (folder / old).exists()]
     if foreign and not (folder / "model.npz").exists():
         raise ParameterError("out", str(folder), f"a folder of runs: {', '.join(foreign)} there would be replaced")
     return folder
 
 
 class Run:
-    """Leads a scene through its stages and keeps its folder."""
+    """Runs a scene through its stages and writes its folder."""
 
     def __init__(self, name, scene, values, folder, identity, began):
         self.name, self.scene, self.values, self.folder, self.began = name, scene, values, folder, began
@@ -122,9 +138,6 @@ class Run:
 
     def prepare(self):
         """Make the folder and the scene, fresh or from the checkpoint."""
-        steps = float(sum(steps for _, steps in self.scene.stages))
-        require(steps <= MOST_STEPS, "steps", steps, f"at most {MOST_STEPS:g} of {self.scene.time_step:g} s in all: shorten "
-                "the times of the scene")
         if not self.values["resume"]:
             self.scene.build()
         try:
@@ -137,9 +150,9 @@ class Run:
             self.snapshots, self.next_snapshot = int(state["snapshots"]), float(state["next_snapshot"])
             self.wall_before = float(state["wall_time"])
         else:
-            for old in OURS:
+            for old in FOLDERS:
                 shutil.rmtree(self.folder / old, ignore_errors=True)
-            for old in ("summary.json", "history.csv", "cracks.csv", "turns.csv", "wear_profile.csv", "tool.stl", "report.html"):
+            for old in FILES:
                 (self.folder / old).unlink(missing_ok=True)
             (self.folder / "snapshots").mkdir()
             np.savez_compressed(self.folder / "model.npz", **self.scene.output.model())
@@ -159,7 +172,7 @@ class Run:
         except (OSError, RuntimeError, FloatingPointError, ParameterError) as error:
             ended, code = f"{type(error).__name__}: {error}".splitlines()[0], 1
         if self.stopped_by:
-            print(f"stopped by signal {self.stopped_by} at t = {self.scene.time:.6g} s; --resume goes on from here")
+            print(f"stopped by signal {self.stopped_by} at t = {self.scene.time:.6g} s; --resume continues from here")
             return 128 + self.stopped_by
         return self._finish(ended, code)
 
@@ -226,7 +239,8 @@ class Run:
         name = "done" if scene.finished else scene.stages[scene.stage][0]
         line = (f"{name:9s} {100 * done / total:5.1f} %  t = {1e3 * scene.time:.2f} ms  {scene.output.progress()}, "
                 f"{int(left) // 60} min {int(left) % 60:02d} s left")
-        print("\r" + line + "\033[K" if sys.stdout.isatty() else line, end="" if sys.stdout.isatty() else "\n", flush=True)
+        terminal = sys.stdout.isatty()
+        print(f"\r{line}\033[K" if terminal else line, end="" if terminal else "\n", flush=True)
 
     def _snapshot(self):
         arrays = self.scene.output.snapshot()
@@ -257,9 +271,10 @@ class Run:
             "files": self.identity["files"], "seed": self.values.get("seed"),
             "versions": {"rockwear": __version__, "yade": yade.config.version, "python": platform.python_version(),
                          "numpy": np.__version__},
-            "results": {name: {"value": _plain(value), "unit": unit} for name, (value, unit) in scene.output.results().items()},
+            "results": {name: {"value": _plain(value), "unit": unit}
+                        for name, (value, unit) in scene.output.results().items()},
             "balances": {name: {"unit": unit, **{key: _plain(value) for key, value in balance.items()}}
-                       for name, (balance, unit) in scene.output.balances().items()},
+                         for name, (balance, unit) in scene.output.balances().items()},
             "wall_time": {"unit": "s", "total": self.wall_before + time.time() - self.began, "set_up": self.setup_time,
                           "loop": self.loop_time, "python_engines": python, "yade": self.loop_time - python,
                           "checkpoints": self.checkpoint_time, "by_engine": ours},

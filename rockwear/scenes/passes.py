@@ -131,7 +131,7 @@ class Passes(Cycles):
         # What is said of the wear is said of this tool alone.
         tool.wear_engine.events[:] = 0
         if tool.profile:
-            tool.profile.forget()
+            tool.profile.clear()
         cold = np.full(tool.count, scene.heat_model.tool_temperature)
         scene.heat.renew_tool(self.field(velocity, shank) if shank else cold)
 

@@ -1,4 +1,4 @@
-"""Two particles, one bond: led along a path of relative displacements, and the forces read back (M 4.6)."""
+"""Two particles, one bond: driven along a path of relative displacements, the forces read back [Rojek 2003, 4.6]."""
 from collections import namedtuple
 
 import numpy as np
@@ -16,15 +16,16 @@ on the second particle as it was summed up, in the law's signs; and the engine o
 TIME_STEP = 1e-6
 
 
-class Lead(base.Engine):
-    """Reads the bond's displacements and forces of this step, then sets the velocities that lead to the next point.
+class PairDriver(base.Engine):
+    """Reads the bond's displacements and forces of this step, then sets the velocities to the next point.
 
     un: (n,) m; ut: (n, 2) m along two tangents; first, second: body ids; axes: 3x3, columns normal and tangents at the
     start; spin: Vector3, angle (rad) by which the pair is turned rigidly at every step. The first particle stays
     where it is. The second is moved along the normal for un, and rolls over the first for ut.
     """
 
-    name = "lead"
+    name = "pair_driver"
+    phase = base.FORCES
 
     def __init__(self, *, un, ut, first, second, axes, spin, bonds):
         super().__init__()
@@ -64,8 +65,8 @@ class Lead(base.Engine):
         self.second.angVel = (self.spin - normal.cross(slip) / self.radius) / O.dt
 
 
-def lead(law, un, ut, *, radii=(1.25e-3, 1.25e-3), axes=None, spin=(0.0, 0.0, 0.0), swapped=False):
-    """Make a bond of `law` between two particles in YADE and lead it along a path. -> Response.
+def drive_pair(law, un, ut, *, radii=(1.25e-3, 1.25e-3), axes=None, spin=(0.0, 0.0, 0.0), swapped=False):
+    """Make a bond of `law` between two particles in YADE and drive it along a path. -> Response.
 
     law: of rockwear.kernels.bond_laws; un: (n,) m; ut: (n,) or (n, 2) m, along one or two tangents; the path starts at
     zero; radii: m; axes: 3x3, normal and tangents as columns; spin: rad a step, turns the pair as a rigid body;
@@ -82,14 +83,14 @@ def lead(law, un, ut, *, radii=(1.25e-3, 1.25e-3), axes=None, spin=(0.0, 0.0, 0.
     bonds.bond()
     O.dt = TIME_STEP
     first, second = (1, 0) if swapped else (0, 1)
-    leader = Lead(un=un, ut=ut, first=first, second=second, axes=axes, spin=Vector3(*spin), bonds=bonds)
-    base.register([bonds, leader])
-    O.engines = O.engines[:-1] + base.runners({"bonds": 1, "lead": 1}) + O.engines[-1:]
+    driver = PairDriver(un=un, ut=ut, first=first, second=second, axes=axes, spin=Vector3(*spin), bonds=bonds)
+    base.register([bonds, driver])
+    base.insert([bonds, driver])
     bonds.connect()
     O.run(len(un) + 1, True)  # a runner sits out its first step
     if base.failures:
         raise base.failures.pop()
-    rows = np.array(leader.rows[:len(un)])
+    rows = np.array(driver.rows[:len(un)])
     return Response(un=rows[:, 0], ut=rows[:, 1:3], Fn=rows[:, 3], Ft=rows[:, 4:6], bonds=bonds)
 
 
