@@ -164,11 +164,13 @@ class Group:
 def unmet(parameter, values, declared):
     """Name of the parameter whose value keeps `parameter` from being used; None where it is used.
 
-    values: {name: value}; declared: {name: Parameter}. A parameter that is not used itself meets no condition.
+    values: {name: value}; declared: {name: Parameter}. A parameter that is not used itself counts with its default.
     """
     for name, allowed in (parameter.when or {}).items():
-        if name in declared and (values[name] not in allowed or unmet(declared[name], values, declared)):
-            return name
+        if name in declared:
+            used = unmet(declared[name], values, declared) is None
+            if (values[name] if used else declared[name].default) not in allowed:
+                return name
     return None
 
 

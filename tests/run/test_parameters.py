@@ -110,8 +110,11 @@ def test_a_condition_on_what_is_not_used_or_not_declared():
     third = Parameter("third", 1.0, "", above_zero, "-", when={"second": ("c",)})
     assert parameters.read([first, second, third], ["--third", "2"])["third"] == 2.0
     assert parameters.read([third], ["--third", "2"])["third"] == 2.0
-    with pytest.raises(ParameterError, match="^third = 2: must be left out with second = c$"):
-        parameters.read([first, second, third], ["--first", "b", "--third", "2"])
+    # What is not used counts with its default.
+    assert parameters.read([first, second, third], ["--first", "b", "--third", "2"])["third"] == 2.0
+    fourth = Parameter("fourth", 1.0, "", above_zero, "-", when={"second": ("d",)})
+    with pytest.raises(ParameterError, match="^fourth = 2: must be left out with second = c$"):
+        parameters.read([first, second, fourth], ["--first", "b", "--fourth", "2"])
 
 
 @pytest.mark.parametrize("words, error", [
