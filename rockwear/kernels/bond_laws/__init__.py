@@ -19,10 +19,3 @@ for _module in iter_modules(__path__):
 
 __all__ = ["BOND_LAWS", "Bond", "BondLaw", "ElasticBrittle", "ElasticDamage", "ElasticDomain", "ElastoPlasticSoftening",
            "Hyperbolic", "NonlinearElastoPlastic", "Parabolic"]
-
-LINEAR_LAWS = {name: BOND_LAWS[name] for name in ("brittle", "damage", "plastic")}
-
-
-def linear_law(name, *, kn, kt, Rn, Rt, H, mu):
-    """The law of this name in LINEAR_LAWS: until all callers use from_values."""
-    return LINEAR_LAWS[name].from_values(dict(kn=kn, kt=kt, Rn=Rn, Rt=Rt, H=H, mu=mu, tension_only=False))

@@ -29,26 +29,3 @@ the law is then in WEAR_LAWS, in --help and in every scene.
 """
 from importlib import import_module
 from pkgutil import iter_modules
-
-from rockwear.kernels.checks import require
-from rockwear.kernels.wear_laws.base import FRICTION, NORMAL, WEAR_LAWS, WORK, WearLaw
-from rockwear.kernels.wear_laws.dissipation import DissipationArchard
-from rockwear.kernels.wear_laws.modes import SumOfModes
-from rockwear.kernels.wear_laws.power import PowerLaw
-from rockwear.kernels.wear_laws.pressure import PressureArchard
-
-for _module in iter_modules(__path__):
-    import_module(f"{__name__}.{_module.name}")
-
-__all__ = ["FRICTION", "NORMAL", "WEAR_LAWS", "WORK", "DissipationArchard", "PowerLaw", "PressureArchard", "SumOfModes",
-           "WearLaw"]
-
-LAWS = ("dissipation", "pressure", "power", "modes")
-
-
-def wear_law(name, *, k, mu, exponent=1.0, modes=""):
-    """The law of this name: until all callers use from_values."""
-    require(name in LAWS, "wear_law", name, f"one of {', '.join(LAWS)}")
-    require(name == "power" or exponent == 1, "wear_exponent", exponent, f"1 under the law {name}")
-    require(name == "modes" or not modes, "wear_modes", modes, f"left out under the law {name}")
-    return WEAR_LAWS[name].from_values({"wear_coefficient": k, "wear_exponent": exponent, "wear_modes": modes}, mu)
