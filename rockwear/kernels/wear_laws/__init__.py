@@ -29,3 +29,15 @@ the law is then in WEAR_LAWS, in --help and in every scene.
 """
 from importlib import import_module
 from pkgutil import iter_modules
+
+from rockwear.kernels.wear_laws.base import FRICTION, NORMAL, WEAR_LAWS, WORK, WearLaw
+from rockwear.kernels.wear_laws.dissipation import DissipationArchard
+from rockwear.kernels.wear_laws.modes import SumOfModes
+from rockwear.kernels.wear_laws.power import PowerLaw
+from rockwear.kernels.wear_laws.pressure import PressureArchard
+
+for _module in iter_modules(__path__):
+    import_module(f"{__name__}.{_module.name}")
+
+__all__ = ["FRICTION", "NORMAL", "WEAR_LAWS", "WORK", "DissipationArchard", "PowerLaw", "PressureArchard", "SumOfModes",
+           "WearLaw"]
