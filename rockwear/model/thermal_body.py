@@ -161,7 +161,7 @@ class FacetBody(ThermalBody):
 
     def _forget_shape(self):
         """Look at all nodes at the next call of `follow`."""
-        self._vertices = self._facets = np.empty(0)
+        self._shape = None
         # m, by which the surface has at least to move to pass each node.
         self._margin = np.zeros(self.count)
 
@@ -191,14 +191,11 @@ class FacetBody(ThermalBody):
 
     def follow(self):
         vertices, facets = self.boundary.vertices, self.boundary.facets
-        if np.array_equal(facets, self._facets):
-            if np.array_equal(vertices, self._vertices):
+        if self._shape:
+            if all(map(np.array_equal, self._shape, (vertices, facets))):
                 return []
-            # No point of the surface has moved further than the vertices.
-            self._margin -= np.linalg.norm(vertices - self._vertices, axis=1).max() * (1 + 1e-9)
-        else:
-            self._margin[:] = 0.0
-        self._vertices, self._facets = vertices.copy(), facets.copy()
+            self._margin -= _motion(*self._shape, vertices, facets) * (1 + 1e-9)
+        self._shape = vertices.copy(), facets.copy()
         near = np.flatnonzero(self._alive & (self._margin <= 0))
         away, first = distance(self.positions[near], vertices, facets), self._outside_at_first[near]
         gone = outside(self.positions[near], vertices, facets) & (away > first * (1 + 1e-9))
@@ -221,3 +218,13 @@ class FacetBody(ThermalBody):
     def restore(self, state):
         self._alive, self._node_of = np.array(state["alive"], bool), np.array(state["node_of"], int)
         self._forget_shape()
+
+
+def _motion(old, old_facets, new, new_facets):
+    """m that no point of a surface has moved further than, given its shape before and after."""
+    if np.array_equal(old_facets, new_facets):
+        return np.linalg.norm(new - old, axis=1).max()
+    # Remeshing moves vertices along the surface. No point of a facet is further from a vertex than its longest side.
+    sides = [np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max()
+             for corners in (old[old_facets], new[new_facets])]
+    return max(distance(new, old, old_facets).max(), distance(old, new, new_facets).max()) + max(sides)

@@ -186,6 +186,18 @@ def test_shapes_followed_by_steps_and_at_once_are_equal(dimension):
     assert np.array_equal(body.node_of, late.node_of)
 
 
+def test_remeshing_passes_no_node_by_itself_and_hides_none():
+    """Deep wear in many steps, over which facets crowd at the corners and are moved elsewhere."""
+    tool, body = of_facets(2)
+    late = FacetBody(tool, fill=Grid())
+    for _ in range(40):
+        recede(tool, 0.1e-3)
+        body.follow()
+    assert tool.boundary.remeshed > 3
+    late.follow()
+    assert np.array_equal(body.alive, late.alive) and 40 < (~body.alive).sum() < 70
+
+
 def test_a_body_is_restored_and_renewed():
     tool, body = of_facets(2)
     new = tool.boundary.state()
