@@ -22,7 +22,8 @@ from calibration.campaigns.uniaxial_tables import write_csv
 from rockwear.kernels import cutting_theory
 from rockwear.kernels.bond_laws import BOND_LAWS
 from rockwear.kernels.checks import ParameterError, require
-from rockwear.report import cutting, page, plots, shapes
+from rockwear.report import page, plots, shapes
+from rockwear.report.bodies import tool_loops
 from rockwear.report.folder import RunFolder
 
 SHAPES = 4
@@ -50,7 +51,7 @@ def stages(run):
 
 def outline(run, shot):
     """(k, 2) m: outline of the worn tooth, its lowest point at y = 0."""
-    polygon = max(cutting.tool_outlines(run, shot), key=len)
+    polygon = max(tool_loops(run, shot), key=len)
     return polygon - [0.0, polygon[:, 1].min()]
 
 

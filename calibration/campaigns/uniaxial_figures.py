@@ -7,7 +7,8 @@ import math
 import numpy as np
 from matplotlib.collections import LineCollection
 
-from rockwear.report import plots, shapes
+from rockwear.report import shapes
+from rockwear.report.instants import spread
 from rockwear.report.plots import MM, canvas, discs, frame
 
 CRACK = "#cc1414"
@@ -16,7 +17,7 @@ CURVE_POINTS = 150
 
 def thinned(values):
     """At most CURVE_POINTS of them, evenly spread."""
-    return np.array(plots.spread(values, CURVE_POINTS))
+    return np.array(spread(values, CURVE_POINTS))
 
 
 def stress_strain(panels):

@@ -5,18 +5,20 @@ from pathlib import Path
 
 import numpy as np
 
+_NOTHING = np.empty(0)
+
 
 class RunFolder:
     """A run's folder. Only summary.json must be there; whatever else is missing reads as empty.
 
-    summary, parameters: as written; columns: {name: (rows,)} and units: {name: unit} of history.csv; model: {name:
-    array}; times, stages: of the snapshots, in order.
+    summary, parameters, balances: as written; columns: {name: (rows,)} and units: {name: unit} of history.csv; model:
+    {name: array}; times, stages: of the snapshots, in order.
     """
 
     def __init__(self, path):
         self.path = Path(path)
         self.summary = json.loads((self.path / "summary.json").read_text(encoding="utf-8"))
-        self.parameters = self.summary.get("parameters", {})
+        self.parameters, self.balances = self.summary.get("parameters", {}), self.summary.get("balances", {})
         self.columns, self.units = read_history(self.path / "history.csv")
         self.model = read_arrays(self.path / "model.npz")
         self._find_snapshots()
@@ -29,6 +31,11 @@ class RunFolder:
         self._paths = [found[k][0] for k in new]
         self.times = np.array([found[k][1] for k in new], float)
         self.stages = np.array([found[k][2] for k in new], int)
+        self._first = self.snapshot(0) if new else {}
+
+    def has(self, *names):
+        """True where the model or the first snapshot has all these arrays, and none of them is empty."""
+        return all(self.model.get(name, self._first.get(name, _NOTHING)).size for name in names)
 
     def snapshot(self, index):
         """{name: array} of one snapshot; -1 is the last."""
@@ -39,7 +46,11 @@ class RunFolder:
         value = self.summary.get("results", {}).get(name, {}).get("value")
         return math.nan if value is None else value
 
-    def parameter(self, name, default):
+    def unit(self, name):
+        """Unit of a result, nothing where the run has none."""
+        return self.summary.get("results", {}).get(name, {}).get("unit", "")
+
+    def parameter(self, name, default=math.nan):
         """Value of a parameter."""
         return self.parameters.get(name, default)
 
@@ -66,6 +77,11 @@ class RunFolder:
     def stage_ends(self):
         """{stage: index of its last snapshot}, in order."""
         return {int(stage): k for k, stage in enumerate(self.stages)}
+
+
+def work_entry(balance):
+    """Name of the entry of an energy balance that says what work was done on the scene; None without one."""
+    return next((name for name in balance if name.endswith("_work")), None)
 
 
 def read_arrays(path, *names):

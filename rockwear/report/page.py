@@ -3,30 +3,35 @@ import base64
 import html
 import math
 from dataclasses import dataclass, field
+from string import Template
+
+from rockwear.report import palette
 
 SHOWN = {"N/m": ("kN/m", 1e-3, 0.0), "s": ("ms", 1e3, 0.0), "K": ("°C", 1.0, -273.15), "J/m3": ("MJ/m³", 1e-6, 0.0),
          "m": ("mm", 1e3, 0.0), "m3": ("cm³", 1e6, 0.0), "m3/m": ("mm³/mm", 1e6, 0.0), "bytes": ("MB", 1e-6, 0.0),
          "Pa": ("MPa", 1e-6, 0.0), "-": ("", 1.0, 0.0)}
 """How a unit of the files is shown: unit, factor, and what is added after it."""
+LARGE = {"s": (1.0, "s", 1.0, 0.0), "m": (1.0, "m", 1.0, 0.0), "N": (2e3, "kN", 1e-3, 0.0)}
+"""The same of values from a size on: size, unit, factor, what is added."""
 
-LOOK = """
-body {font: 15px/1.45 system-ui, sans-serif; color: #222; background: #fff}
+LOOK = Template("""
+body {font: 15px/1.45 system-ui, sans-serif; color: $text; background: $back}
 body {max-width: 1100px; margin: 0 auto; padding: 1.5em}
-h1 {margin: 0} h2 {margin: 2em 0 .2em; border-bottom: 2px solid #c8a15a; padding-bottom: .15em}
-p {margin: .4em 0 .8em} .ended {color: #555; font-size: 1.1em}
-.warning {background: #fbe9e7; border-left: 4px solid #cc1414; padding: .4em .8em}
+h1 {margin: 0} h2 {margin: 2em 0 .2em; border-bottom: 2px solid $rule; padding-bottom: .15em}
+p {margin: .4em 0 .8em} .ended {color: $faint; font-size: 1.1em}
+.warning {background: $warning; border-left: 4px solid $warning_edge; padding: .4em .8em}
 img {max-width: 100%; display: block; margin: .5em auto}
 .tiles {display: grid; grid-template-columns: repeat(5, 1fr); gap: 10px; margin: 1em 0}
 @media (max-width: 800px) {.tiles {grid-template-columns: repeat(2, 1fr)}}
-.tile {background: #f6f2ea; border-radius: 6px; padding: .5em .8em}
+.tile {background: $panel; border-radius: 6px; padding: .5em .8em}
 .tile b {display: block; font-size: 1.35em; white-space: nowrap}
-.tile span {color: #555; font-size: .85em; display: block}
-table {border-collapse: collapse; margin: .6em 0} th {text-align: left; background: #f6f2ea}
-td, th {padding: .2em .9em .2em .5em; border-bottom: 1px solid #e4ddd0; vertical-align: top}
+.tile span {color: $faint; font-size: .85em; display: block}
+table {border-collapse: collapse; margin: .6em 0} th {text-align: left; background: $panel}
+td, th {padding: .2em .9em .2em .5em; border-bottom: 1px solid $line; vertical-align: top}
 td.number {text-align: right; font-variant-numeric: tabular-nums}
 .beside {display: flex; flex-wrap: wrap; gap: 0 3em} caption {text-align: left; font-weight: bold; padding: .3em 0}
 details {margin: 1em 0} summary {cursor: pointer; font-weight: bold}
-"""
+""").substitute(palette.PAGE)
 
 
 @dataclass
@@ -42,7 +47,8 @@ class Section:
         pieces = [piece for piece in self.pieces if piece]
         if not pieces:
             return ""
-        return f"<h2>{html.escape(self.title)}</h2>\n<p>{html.escape(self.words)}</p>\n" + "\n".join(pieces)
+        words = f"<p>{html.escape(self.words)}</p>\n" if self.words else ""
+        return f"<h2>{html.escape(self.title)}</h2>\n{words}" + "\n".join(pieces)
 
 
 def number(value):
@@ -54,11 +60,18 @@ def number(value):
     return f"{value:.0f}" if abs(value) >= 1000 else f"{value:.3g}"
 
 
+def shown_unit(unit, size):
+    """(unit, factor, what is added) in which values of about this size are shown."""
+    if unit in LARGE and abs(size) >= LARGE[unit][0]:
+        return LARGE[unit][1:]
+    return SHOWN.get(unit, (unit, 1.0, 0.0))
+
+
 def quantity(value, unit):
     """Value and unit as shown: quantity(12e3, "N/m") is "12 kN/m"."""
     if isinstance(value, str):
         return value
-    shown, factor, added = SHOWN.get(unit, (unit, 1.0, 0.0))
+    shown, factor, added = shown_unit(unit, value)
     if (factor, added) != (1.0, 0.0):
         value = value * factor + added
     return f"{number(value)} {shown if math.isfinite(value) else ''}".strip()
@@ -97,7 +110,9 @@ def table(rows, header=(), caption=""):
 
 
 def tiles(entries):
-    """The numbers to see first: [(label, value, remark)]."""
+    """The numbers to see first: [(label, value, remark)]; empty without any."""
+    if not entries:
+        return ""
     cells = [[html.escape(word) for word in entry] for entry in entries]
     return '<div class="tiles">' + "\n".join(
         f'<div class="tile"><span>{label}</span><b>{value}</b><span>{remark}</span></div>'
@@ -117,47 +132,9 @@ def folded(title, *pieces):
 
 
 def beside(*pieces):
-    """Pieces side by side as far as there is room."""
-    return '<div class="beside">' + "\n".join(f"<div>{piece}</div>" for piece in pieces if piece) + "</div>"
-
-
-def machine_tiles(run):
-    """What the run cost."""
-    wall = run.summary.get("wall_time", {})
-    loop, python = wall.get("loop", math.nan), wall.get("python_engines", math.nan)
-    memory = run.summary.get("peak_memory", {}).get("value", math.nan)
-    return [("wall time", duration(wall.get("total", math.nan)), f"Python engines {percent(python, loop)} of the loop"),
-            ("peak memory", quantity(memory, "bytes"), "")]
-
-
-def whole_results(run):
-    """Every result of summary.json, as shown and as written."""
-    rows = [(words(name), quantity(entry["value"], entry["unit"]), repr(entry["value"]), entry["unit"])
-            for name, entry in run.summary.get("results", {}).items()]
-    return Section("Everything else", "Values in SI are those of summary.json, to the last digit.",
-                   [folded("All results", table(rows, ("result", "", "SI", "")))])
-
-
-def parameters(run):
-    """Effective parameters, versions, and wall time by engine."""
-    wall = run.summary.get("wall_time", {})
-    loop = wall.get("loop", math.nan)
-    engines = [(words(name), f"{entry['seconds']:.2f}", percent(entry["seconds"], loop), entry["visits"])
-               for name, entry in wall.get("by_engine", {}).items()]
-    phases = [(words(name), f"{wall[name]:.2f}") for name in wall if name not in ("unit", "by_engine")]
-    versions = [(name, version) for name, version in run.summary.get("versions", {}).items()]
-    chosen = [(name, f"{value:.12g}" if isinstance(value, float) else value) for name, value in run.parameters.items()]
-    return Section("How it was run", "Parameters in SI, defaults included.", [
-        folded("All parameters", table(chosen, ("parameter", "value"))),
-        folded("Versions and wall time", beside(
-            table(versions, ("program", "version")), table(phases, ("phase", "s")),
-            table(engines, ("engine", "s", "of the loop", "visits"))))])
-
-
-def whole_page(run, sections):
-    """The whole page of a run."""
-    return document(words(run.summary.get("scene", "")), run.summary.get("ended", "not known"), sections,
-                    run.summary.get("warnings", ()))
+    """Pieces side by side as far as there is room; empty where all are."""
+    inside = "\n".join(f"<div>{piece}</div>" for piece in pieces if piece)
+    return f'<div class="beside">{inside}</div>' if inside else ""
 
 
 def document(title, remark, sections, warnings=()):

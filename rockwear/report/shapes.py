@@ -92,8 +92,8 @@ def section(vertices, facets, z):
     # Of three corners one is alone on its side; the plane cuts its two edges.
     alone = np.argmax(above == (above.sum(axis=1) == 1)[:, None], axis=1)
     here, *others = (corners[np.arange(len(corners)), (alone + k) % 3] for k in range(3))
-    return np.stack([(here + (other - here) * ((z - here[:, 2]) / (other - here)[:, 2])[:, None])[:, :2] for other in others],
-                    axis=1)
+    ends = [here + (other - here) * ((z - here[:, 2]) / (other - here)[:, 2])[:, None] for other in others]
+    return np.stack(ends, axis=1)[:, :, :2]
 
 
 def distance_to(points, polygons, spacing):
@@ -110,10 +110,10 @@ def pieces(count, pairs, intact):
 
 
 def chips(count, pairs, intact, fixed):
-    """(n,) bool: discs that no chain of intact bonds joins to a held one (to the largest part, if none is held)."""
+    """(n,) bool: discs that no chain of intact bonds joins to a fixed one (to the largest piece, if none is fixed)."""
     label = pieces(count, pairs, intact)
-    anchors = label[fixed] if np.any(fixed) else [np.argmax(np.bincount(label))]
-    return ~np.isin(label, anchors)
+    whole = label[fixed] if np.any(fixed) else [np.argmax(np.bincount(label))]
+    return ~np.isin(label, whole)
 
 
 def cracks(positions, radii, pairs, near=1.3):

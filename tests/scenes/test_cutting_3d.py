@@ -7,8 +7,8 @@ import pytest
 
 from rockwear.model.facet_tool import read_stl, write_stl
 from rockwear.kernels.boundary import check_boundary, distance, volume
-from rockwear.report import space
 from rockwear.report.folder import RunFolder, read_history
+from rockwear.report.views import wear_triangles
 
 from tests.running import (ROOT, arguments, assert_as_if_never_stopped, finish, history, interrupt_script, run_script,
                        start)
@@ -101,7 +101,7 @@ def test_no_heat_engine_and_files_for_paraview(worn):
     assert "heat" not in worn.summary["wall_time"]["by_engine"]
     assert len(list((worn.out / "vtk").glob("tool.*.vtk"))) > 2
     page = (worn.out / "report.html").read_text(encoding="utf-8")
-    assert "in perspective" in page and "M 13.3: 0.14 mm" in page
+    assert "in perspective" in page and "[Rojek 2003, 13.3]: 0.14 mm" in page
 
 
 @pytest.mark.parametrize("rule", ["volume", "depth"])
@@ -184,7 +184,7 @@ def test_the_page_shows_where_and_how_deep_triangles_are_worn(blunted):
     assert (blunted.out / "figures/worn_triangles.png").exists()
     page = (blunted.out / "report.html").read_text(encoding="utf-8")
     assert "How far the surface has gone back" in page and "maximum wear depth" in page and "particles removed" not in page
-    front, _, bar, whole, near = space.worn_triangles(RunFolder(blunted.out)).axes
+    front, _, bar, whole, near = wear_triangles.figure(RunFolder(blunted.out)).axes
     triangles, = front.collections
     assert len(triangles.get_facecolor()) == value(blunted, "facets")
     # The colours end where the worn surface lies deepest in the new tooth; the new tip may be further away from it.

@@ -9,8 +9,8 @@ import pytest
 
 from rockwear.kernels.boundary import distance
 from rockwear.kernels.wear_statistics import places
-from rockwear.report import segments
 from rockwear.report.folder import RunFolder, read_history
+from rockwear.report.views import history
 
 from tests.running import ROOT, SMALL, arguments, interrupt_script, run_script
 
@@ -116,7 +116,7 @@ def test_the_depth_of_wear_is_the_way_from_the_new_outline_to_the_worn_one(worn)
 
 def test_the_history_shows_working_hours(worn):
     run = RunFolder(worn.out)
-    figure = segments.history(run)
+    figure = history.figure(run)
     figure.draw_without_rendering()
     panel = figure.axes[-1]
     upper, = panel.child_axes

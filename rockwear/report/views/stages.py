@@ -1,0 +1,32 @@
+"""Forces, wear and temperature stage by stage."""
+import math
+
+import numpy as np
+
+from rockwear.report.instants import stage_name, turns
+from rockwear.report.page import Section, percent, quantity, table
+
+
+def stages(run):
+    """Section of forces, wear and temperature by stage."""
+    stage = run.column("stage")
+    if "cutting_force" not in run.columns or not np.isfinite(stage).any() or turns(run):
+        return None
+    unit = run.units["cutting_force"]
+    columns = [("mean cutting force", lambda k: quantity(mean_at_work(run, "cutting_force", k), unit)),
+               ("peak", lambda k: quantity(run.over_stage("cutting_force", np.max, k), unit)),
+               ("mean thrust force", lambda k: quantity(mean_at_work(run, "thrust_force", k), unit)),
+               ("mass lost so far", lambda k: percent(run.over_stage("mass_lost", np.max, k), 1.0))]
+    if "tool_temperature_max" in run.columns:
+        columns.append(("hottest tool", lambda k: quantity(run.over_stage("tool_temperature_max", np.max, k), "K")))
+    rows = [(stage_name(run, k), *(cell(k) for _, cell in columns))
+            for k in np.unique(stage[np.isfinite(stage)]).astype(int)]
+    return Section("Stage by stage", "", [table(rows, ("", *(header for header, _ in columns)))])
+
+
+def mean_at_work(run, name, stage):
+    """Mean of a force over the working time of a stage: without the time in which a worn tool comes to the rock."""
+    mean, worked = run.over_stage(name, np.mean, stage), run.over_stage("working_time", np.ptp, stage)
+    if math.isnan(worked):
+        return mean
+    return mean * run.over_stage("time", np.ptp, stage) / worked if worked else math.nan

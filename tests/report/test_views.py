@@ -1,0 +1,227 @@
+"""Views of the page on combinations of parts: what a run has is shown, whatever scene it comes from."""
+import json
+import re
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+import pytest
+
+from rockwear.kernels.boundary import prism, segments
+from rockwear.report import bodies, instants, pages, plots
+from rockwear.report.folder import RunFolder
+from rockwear.report.views import forces, history, key_results, outlines, stages, temperature, two_disc
+from tests.report.made_up import HEADER, HOT, lattice, make_run
+
+ROOT = Path(__file__).parents[2]
+OUTLINE = np.array([[0, 0], [6e-3, 0], [6e-3, 8e-3], [0, 8e-3]])
+PARTICLES = {"tool_radii", "tool_positions", "tool_volumes", "alive", "worn_depth", "surface"}
+
+
+def titles(run):
+    """Titles of the sections that show something."""
+    with matplotlib.rc_context(plots.STYLE):
+        return [section.title for section in pages.sections(run) if section.html()]
+
+
+def change(folder, model=lambda arrays: arrays, snapshot=lambda arrays, k: arrays):
+    """Write arrays of a run anew."""
+    np.savez(folder / "model.npz", **model(dict(np.load(folder / "model.npz"))))
+    for k, path in enumerate(sorted((folder / "snapshots").iterdir())):
+        np.savez(path, **snapshot(dict(np.load(path)), k))
+    return folder
+
+
+def parameters(folder, **values):
+    """Change parameters in summary.json."""
+    summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    summary["parameters"].update(values)
+    (folder / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
+
+
+def with_segments(folder, nodes=None):
+    """Make the tool one of segments that recede by 0.1 mm a snapshot at the bottom; nodes (n, 2) m: thermal nodes."""
+    vertices, facets = segments(OUTLINE)
+    parameters(folder, reshape=True)
+
+    def model(arrays):
+        kept = {name: array for name, array in arrays.items() if name not in PARTICLES}
+        heat = {} if nodes is None else {"thermal_positions": nodes}
+        fixed = np.zeros(len(facets), bool)
+        return {**kept, "tool_vertices": vertices, "tool_facets": facets, "tool_fixed": fixed, **heat}
+
+    def snapshot(arrays, k):
+        kept = {name: array for name, array in arrays.items() if name not in PARTICLES}
+        now = vertices + np.array([0, 1e-4 * k]) * (vertices[:, 1] < 1e-6)[:, None]
+        heat = {} if nodes is None else {
+            "thermal_alive": np.arange(len(nodes)) >= k,
+            "temperature": np.concatenate([np.full(100, 293.0), 300.0 + np.arange(len(nodes)) + k])}
+        worn = np.full(len(facets), 1e-9 * k)
+        return {**kept, "tool_vertices": now, "tool_facets": facets, "worn_volume": worn, **heat}
+
+    return change(folder, model, snapshot)
+
+
+def in_space(folder):
+    """Make rock and tool of the same run spheres in one layer."""
+    def spatial(points):
+        return np.column_stack([points, np.zeros(len(points))])
+
+    def model(arrays):
+        arrays["block"] = np.array([*arrays.pop("box"), 2e-3])
+        count = len(arrays["tool_radii"])
+        return {**arrays, "tool_positions": spatial(arrays["tool_positions"]), "tool_fixed": np.zeros(count, bool)}
+
+    return change(folder, model, lambda arrays, k: {**arrays, "rock_positions": spatial(arrays["rock_positions"])})
+
+
+def test_a_cut_in_the_plane_has_its_sections_in_order(tmp_path):
+    assert titles(RunFolder(make_run(tmp_path / "run"))) == [
+        "Key results", "Stage by stage", "Set-up", "The cut", "History", "Temperature", "Wear of the tool",
+        "Shape of the tool", "Balances", "All results", "How it was run"]
+
+
+def test_heat_in_space_shows_temperature(tmp_path):
+    run = RunFolder(in_space(make_run(tmp_path / "run")))
+    shown = titles(run)
+    assert {"The cut in perspective", "The cut from the side", "Temperature"} <= set(shown) and "Set-up" not in shown
+    assert (run.path / "figures/temperature.png").exists()
+    positions, radii, kelvin = bodies.tool_heat(run, run.snapshot(-1))
+    alive = run.snapshot(-1)["alive"]
+    assert positions.shape == (alive.sum(), 3)
+    np.testing.assert_array_equal(kelvin, run.snapshot(-1)["temperature"][100:][alive])
+
+
+def test_heat_behind_segments_shows_temperature(tmp_path):
+    nodes, _ = lattice(6, 8, 0.5e-3)
+    run = RunFolder(with_segments(make_run(tmp_path / "run"), nodes))
+    assert {"Set-up", "The cut", "Temperature", "Wear along the tool", "Shape of the tool"} <= set(titles(run))
+    positions, radii, kelvin = bodies.tool_heat(run, run.snapshot(3))
+    np.testing.assert_array_equal(positions, nodes[3:])
+    np.testing.assert_allclose(radii, 0.55e-3)
+    np.testing.assert_array_equal(kelvin, 303.0 + np.arange(3, len(nodes)))
+    assert "tool up to 76.9 °C" in temperature.hottest(run, run.snapshot(3))
+
+
+def test_segments_without_heat_have_no_temperature(tmp_path):
+    run = RunFolder(with_segments(make_run(tmp_path / "run", heat=False)))
+    assert "Temperature" not in titles(run)
+    assert not bodies.has_heat(run)
+
+
+def test_worn_depth_of_segments_is_exact(tmp_path):
+    run = RunFolder(with_segments(make_run(tmp_path / "run", heat=False)))
+    bottom = np.array([[3e-3, 0.0], [3e-3, 8e-3]])
+    np.testing.assert_allclose(bodies.gap(run, bottom, run.snapshot(3)), [3e-4, 0], atol=1e-12)
+    np.testing.assert_allclose(bodies.gap(run, bottom), 0, atol=1e-12)
+    profile = outlines.figure(run).axes[2]
+    assert max(line.get_ydata().max() for line in profile.lines) == pytest.approx(0.3, rel=1e-6)
+
+
+def test_volume_of_a_tool_however_it_is_made(tmp_path):
+    particles = make_run(tmp_path / "particles")
+    assert bodies.tool_volume(RunFolder(particles)) == pytest.approx(48e-6)
+    assert bodies.tool_volume(RunFolder(with_segments(make_run(tmp_path / "segments")))) == pytest.approx(48e-6)
+    change(particles, lambda arrays: {name: arrays[name] for name in arrays if name != "tool_volumes"})
+    assert bodies.tool_volume(RunFolder(in_space(particles))) == pytest.approx(48e-9)
+
+
+def test_depth_of_triangles_is_that_of_their_corners(tmp_path):
+    vertices, facets = prism(OUTLINE, 4e-3, 2e-3)
+    folder = in_space(make_run(tmp_path / "run", heat=False))
+    parameters(folder, reshape=True)
+    lower = np.where(vertices[:, 1:2] < 1e-6, [0, 2e-4, 0], 0.0)
+    change(folder, lambda arrays: {**{name: arrays[name] for name in arrays if name not in PARTICLES},
+                                   "tool_vertices": vertices, "tool_facets": facets},
+           lambda arrays, k: {**{name: arrays[name] for name in arrays if name not in PARTICLES},
+                              "tool_vertices": vertices + k * lower, "tool_facets": facets,
+                              "worn_volume": np.zeros(len(facets))})
+    run = RunFolder(folder)
+    x, y, z = vertices.T
+    # Those on the rim slide along the new sides.
+    inner = (y < 1e-6) & (x > 1e-6) & (x < 6e-3 - 1e-6) & (abs(z) < 2e-3 - 1e-6)
+    assert inner.sum() == 3
+    np.testing.assert_allclose(bodies.facet_depth(run, run.snapshot(1)), 2e-4 * inner[facets].mean(axis=1), atol=1e-12)
+
+
+def test_a_stage_without_working_time_has_no_mean_force(tmp_path):
+    folder = make_run(tmp_path / "run")
+    lines = (folder / "history.csv").read_text(encoding="utf-8").splitlines()
+    rows = [lines[0] + ",working_time [s]"] + [
+        line + (",0.002" if float(line.split(",")[1]) else f",{line.split(',')[0]}") for line in lines[1:]]
+    (folder / "history.csv").write_text("\n".join(rows) + "\n", encoding="utf-8")
+    run = RunFolder(folder)
+    assert np.isnan(stages.mean_at_work(run, "cutting_force", 1)) and stages.mean_at_work(run, "cutting_force", 0) > 0
+    assert "<td>cycle 1</td><td class=\"number\">not known</td>" in stages.stages(run).html()
+
+
+def test_any_column_is_shown(tmp_path):
+    """Units and sizes apart, and columns that no view knows beside those that all do."""
+    folder = make_run(tmp_path / "run")
+    time = np.linspace(0, 4e-3, 30)
+    others = {"pore_pressure [Pa]": 1e6 * time, "suction [Pa]": 0.9e6 * time, "sound [Pa]": time}
+    lines = (folder / "history.csv").read_text(encoding="utf-8").splitlines()
+    added = np.column_stack(list(others.values()))
+    rows = [",".join([lines[0], *others])] + [
+        ",".join([line, *(f"{x:.6g}" for x in row)]) for line, row in zip(lines[1:], added)]
+    (folder / "history.csv").write_text("\n".join(rows) + "\n", encoding="utf-8")
+    drawn = history.figure(RunFolder(folder))
+    shown = [[text.get_text() for text in axes.get_legend().get_texts()] for axes in drawn.axes]
+    assert shown == [["cutting force", "thrust force"],
+                     ["tool work", "kinetic energy", "tool friction", "bond breaking"],
+                     ["tensile cracks", "shear cracks"], ["mass lost", "worn by the wear law"],
+                     ["hottest of the tool", "hottest of the rock"], ["pore pressure", "suction"], ["sound"]]
+    assert len([name for group in shown for name in group]) == len(HEADER) + len(HOT) + 3 - 2
+
+
+def test_forces_while_the_tool_cuts_are_those_of_its_stages(tmp_path):
+    folder = make_run(tmp_path / "run")
+    assert forces.forces(RunFolder(folder)) is None
+    change(folder, lambda arrays: {**arrays, "stage_names": np.array(["lowering", "cutting"])})
+    run = RunFolder(folder)
+    assert instants.stage_name(run, 1) == "cutting"
+    at_work = instants.cutting(run)
+    np.testing.assert_array_equal(at_work, run.column("stage") == 1)
+    axes, = forces.figure(run, at_work).axes
+    np.testing.assert_allclose(axes.lines[-2].get_ydata(), 1e-3 * run.column("thrust_force")[at_work])
+    assert "while it cuts" in key_results.key_results(run).html()
+
+
+def test_times_are_shown_in_ms_or_s(tmp_path):
+    folder = make_run(tmp_path / "run")
+    run = RunFolder(folder)
+    assert instants.clock(run) == (1e3, "ms") and instants.moment(run, 3) == "cycle 1, 3.00 ms"
+    change(folder, snapshot=lambda arrays, k: {**arrays, "time": 1.0 * k})
+    run = RunFolder(folder)
+    assert instants.clock(run) == (1.0, "s") and instants.moment(run, 3) == "cycle 1, 3.000 s"
+
+
+def test_two_discs_are_drawn_from_their_paths(tmp_path):
+    (tmp_path / "paths").mkdir()
+    (tmp_path / "summary.json").write_text(json.dumps({"scene": "two_disc", "results": {
+        "largest deviation": {"value": 1e-13, "unit": "of Rn"}}}), encoding="utf-8")
+    path = np.column_stack([np.linspace(0, 1e-5, 7)] * 2 + [np.arange(7.0), np.zeros(7)] * 2)
+    for kind in {kind for kind, *_ in two_disc.FIGURES["plastic"]}:
+        np.savetxt(tmp_path / f"paths/plastic_{kind.replace(', ', '_').replace(' ', '_')}.csv", path, delimiter=",",
+                   header="un [m],ut [m],Fn [N],Ft [N],Fn drive [N],Ft drive [N]", comments="")
+    run = RunFolder(tmp_path)
+    assert titles(run) == ["Results", two_disc.TITLES["plastic"], "All results", "How it was run"]
+    figures = {file.stem for file in (tmp_path / "figures").iterdir()}
+    assert figures == {f"figure_4_{number}" for number in range(11, 19)}
+    law, points = two_disc.figure(run, "plastic", "tension", "Fn", "un", "").axes[0].lines
+    np.testing.assert_allclose(points.get_ydata(), 1e-3 * np.arange(7))
+    np.testing.assert_allclose(law.get_xdata(), np.linspace(0, 10, 7))
+
+
+def test_every_colour_stands_in_the_palette():
+    named = re.compile(r"""#[0-9a-fA-F]{3,8}\b|colou?rs?=["']|c(olor)?map=["']|colormaps|"C\d"|["']0\.\d+["']""")
+    files = [file for file in (ROOT / "rockwear/report").rglob("*.py") if file.name != "palette.py"]
+    found = [f"{file.name}: {line.strip()}" for file in files
+             for line in file.read_text(encoding="utf-8").splitlines() if named.search(line)]
+    assert len(files) > 20 and not found
+
+
+def test_views_share_no_drawing_but_by_common_modules():
+    """A view stands alone: what two need lies beside them."""
+    for file in (ROOT / "rockwear/report/views").glob("*.py"):
+        assert "report.views" not in file.read_text(encoding="utf-8"), file.name
