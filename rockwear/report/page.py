@@ -119,6 +119,11 @@ def tiles(entries):
         for label, value, remark in cells) + "</div>"
 
 
+def heading(text):
+    """A heading within a section."""
+    return f"<h3>{html.escape(text)}</h3>"
+
+
 def image(path):
     """A picture of the disk, inside the page."""
     kind = path.suffix.lstrip(".")

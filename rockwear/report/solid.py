@@ -80,8 +80,8 @@ def paint(axes, *parts, edge=0.35, frame=None, darkest=0.72):
     polygons = [polygon for part in parts for polygon in part[1]]
     colours = np.vstack([part[2] for part in parts])
     order = np.argsort(depth, kind="stable")
-    shade = darkest + (1 - darkest) * (depth - depth.min(initial=np.inf)) / max(np.ptp(depth) if len(depth) else 0.0, 1e-12)
-    colours = (colours * shade[:, None])[order]
+    nearness = (depth - depth.min(initial=np.inf)) / max(depth.max(initial=-np.inf) - depth.min(initial=np.inf), 1e-12)
+    colours = (colours * (darkest + (1 - darkest) * nearness)[:, None])[order]
     axes.add_collection(PolyCollection([MM * polygons[k] for k in order], facecolors=colours, edgecolors=0.6 * colours,
                                        linewidths=edge))
     points = MM * (np.concatenate([p[:: max(1, len(p) // 4)] for p in polygons]) if frame is None else frame)

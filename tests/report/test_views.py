@@ -201,11 +201,12 @@ def test_two_discs_are_drawn_from_their_paths(tmp_path):
     (tmp_path / "summary.json").write_text(json.dumps({"scene": "two_disc", "results": {
         "largest deviation": {"value": 1e-13, "unit": "of Rn"}}}), encoding="utf-8")
     path = np.column_stack([np.linspace(0, 1e-5, 7)] * 2 + [np.arange(7.0), np.zeros(7)] * 2)
-    for kind in {kind for kind, *_ in two_disc.FIGURES["plastic"]}:
+    for kind in {kind for kind, *_ in two_disc.SHOWN}:
         np.savetxt(tmp_path / f"paths/plastic_{kind.replace(', ', '_').replace(' ', '_')}.csv", path, delimiter=",",
                    header="un [m],ut [m],Fn [N],Ft [N],Fn drive [N],Ft drive [N]", comments="")
     run = RunFolder(tmp_path)
-    assert titles(run) == ["Results", two_disc.TITLES["plastic"], "All results", "How it was run"]
+    assert titles(run) == ["Results", "Forces over displacements", "All results", "How it was run"]
+    assert two_disc.driven(run) == ["plastic"] and two_disc.TITLES["plastic"] in two_disc.two_disc(run).html()
     figures = {file.stem for file in (tmp_path / "figures").iterdir()}
     assert figures == {f"figure_4_{number}" for number in range(11, 19)}
     law, points = two_disc.figure(run, "plastic", "tension", "Fn", "un", "").axes[0].lines

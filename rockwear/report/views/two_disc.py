@@ -2,17 +2,17 @@
 programme."""
 from rockwear.report import palette
 from rockwear.report.folder import read_history
-from rockwear.report.page import Section, beside, table
+from rockwear.report.page import Section, beside, heading, table
 from rockwear.report.plots import canvas, save
 
 COMMON = [("tension", "Fn", "un"), ("tension, unloading and reloading", "Fn", "un"), ("compression", "Fn", "un"),
           ("shear", "Ft", "ut"), ("shear with compression", "Fn", "un"), ("shear with compression", "Ft", "ut")]
-SHEAR_WITH_TENSION = [("shear with tension", "Fn", "ut"), ("shear with tension", "Ft", "ut")]
-FIGURES = {"plastic": COMMON + SHEAR_WITH_TENSION,
-           "damage": COMMON + [("shear with tension", "Ft", "ut"), ("shear with tension", "Fn", "un")],
-           "brittle": COMMON + SHEAR_WITH_TENSION, "padova": COMMON + SHEAR_WITH_TENSION}
-"""Law: what its figures show, (programme, force, displacement), in the order of [Rojek 2003] where that has them."""
+SHOWN = COMMON + [("shear with tension", "Fn", "ut"), ("shear with tension", "Ft", "ut")]
+"""What the figures of a law show, (programme, force, displacement)."""
+IN_THE_ORDER_OF_ITS_SOURCE = {
+    "damage": COMMON + [("shear with tension", "Ft", "ut"), ("shear with tension", "Fn", "un")]}
 FIRST_FIGURE = {"plastic": 11, "damage": 19}
+"""Number of a law's first figure in [Rojek 2003, chapter 4]."""
 TITLES = {"plastic": "Elasto-plastic bond with linear softening [Rojek 2003, 4.6.1]",
           "damage": "Elastic damage with linear softening [Rojek 2003, 4.6.2]",
           "brittle": "Elastic perfectly brittle bond",
@@ -22,31 +22,41 @@ AXES = {"un": "opening / µm", "ut": "tangential displacement / µm", "Fn": "nor
 MOST_POINTS = 60
 
 
-def two_disc(law):
-    """The view of one law: a run's section of it."""
-    def view(run):
-        figures = [save(run, name, figure(run, law, *shown, title)) for name, shown, title in labels(law)
-                   if path_of(run, law, shown[0]).exists()]
-        words = "Points: YADE. Line: the law's own drive at the same displacements."
-        return Section(TITLES[law], words, [beside(*figures)]) if figures else None
-    return view
+def two_disc(run):
+    """Section of all laws that were driven."""
+    laws = driven(run)
+    if not laws:
+        return None
+    pieces = [piece for law in laws
+              for piece in (heading(TITLES.get(law, f"Bond law {law}")), beside(*drawn(run, law)))]
+    return Section("Forces over displacements", "Points: YADE. Line: the law's own drive at the same displacements.",
+                   pieces)
 
 
 def two_disc_results(run):
     """Section of how well YADE and the laws agree."""
-    if not any(path_of(run, law, "tension").exists() for law in FIGURES):
+    if not driven(run):
         return None
     rows = [(name, f"{entry['value']:.6g}", entry["unit"]) for name, entry in run.summary.get("results", {}).items()]
     return Section("Results", "Deviations of YADE's forces from the law's own drive, as parts of the tensile strength, "
                    "and what [Rojek 2003] says of its figures.", [table(rows, ("quantity", "value", "unit"))])
 
 
-def labels(law):
-    """[(name of the figure's file, what it shows, its title)] of a law."""
-    for place, shown in enumerate(FIGURES[law]):
+def driven(run):
+    """Names of the laws whose paths are there, those of the source first."""
+    found = {path.name.removesuffix("_tension.csv") for path in (run.path / "paths").glob("*_tension.csv")
+             if not path.name.endswith("_with_tension.csv")}
+    return sorted(found, key=lambda law: (list(TITLES).index(law) if law in TITLES else len(TITLES), law))
+
+
+def drawn(run, law):
+    """Pictures of a law, as html."""
+    for place, shown in enumerate(IN_THE_ORDER_OF_ITS_SOURCE.get(law, SHOWN)):
         number = f"4.{FIRST_FIGURE[law] + place}" if law in FIRST_FIGURE else f"{law} {place + 1}"
-        source = f"[Rojek 2003, fig. {number}]" if law in FIRST_FIGURE else number
-        yield f"figure_{number.replace('.', '_').replace(' ', '_')}", shown, f"{source}: {shown[0]}"
+        title = f"[Rojek 2003, fig. {number}]" if law in FIRST_FIGURE else number
+        if path_of(run, law, shown[0]).exists():
+            yield save(run, f"figure_{number.replace('.', '_').replace(' ', '_')}",
+                       figure(run, law, *shown, f"{title}: {shown[0]}"))
 
 
 def path_of(run, law, programme):

@@ -35,8 +35,9 @@ def shows(run):
 def paint_surface(axes, run, shot, norm, view):
     """The tool's surface in the colour of its worn depth."""
     surface = shot["surface"]
-    paint(axes, sphere_polygons(run.model["tool_positions"][surface], run.model["tool_radii"][surface],
-                                palette.WEAR(norm(MM * shot["worn_depth"][surface])), view), edge=0.15, darkest=READABLE)
+    colours = palette.WEAR(norm(MM * shot["worn_depth"][surface]))
+    paint(axes, sphere_polygons(run.model["tool_positions"][surface], run.model["tool_radii"][surface], colours, view),
+          edge=0.15, darkest=READABLE)
 
 
 def depth_figure(run):
