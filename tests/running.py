@@ -47,6 +47,30 @@ def checks_of(name, folder, *words):
     return json.loads(file.read_text(encoding="utf-8"))
 
 
+def refusals(script, folder, cases):
+    """[(exit code, what it said)] of a script started with each of the lists of words `cases`, all in one process of YADE."""
+    file = folder / "cases.json"
+    file.write_text(json.dumps([[str(word) for word in words] for words in cases]), encoding="utf-8")
+    return [tuple(pair) for pair in checks_of("refusals", folder, str(script), str(file))]
+
+
+def assert_refused(code, said, words):
+    """Refused with exit code 2 and one line that has these words in it, and no traceback."""
+    lines = [line for line in said.splitlines() if line.startswith("error: ") or "Traceback" in line]
+    assert code == 2 and len(lines) == 1 and lines[0].startswith("error: ") and words in lines[0], said
+
+
+def value(run, name):
+    """A result of a run."""
+    return run.summary["results"][name]["value"]
+
+
+def last_snapshot(out):
+    """{name: array} of the last snapshot of the run in `out`."""
+    with np.load(sorted((out / "snapshots").glob("*.npz"))[-1]) as arrays:
+        return dict(arrays)
+
+
 def assert_as_if_never_stopped(resumed, never, *tables):
     """A resumed run ended with the results, balances and tables, to the last bit, of one that was never stopped."""
     assert resumed.code == 0, resumed.stderr
