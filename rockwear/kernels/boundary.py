@@ -150,7 +150,8 @@ def _piercing(vertices, edges, facets):
     corner, normal = vertices[facets[:, 0]], 2 * area_vectors(vertices, facets)
     # Facets of one plane are on neither side of each other, whatever the last digits say.
     least = 1e-9 * np.linalg.norm(normal, axis=1)[j] * np.linalg.norm(end - start, axis=1)[i]
-    above, below = (np.einsum("ni,ni->n", normal[j], ends[i] - corner[j]) for ends in (start, end))
+    corner, normal = corner.take(j, axis=0), normal.take(j, axis=0)
+    above, below = (np.einsum("ni,ni->n", normal, ends.take(i, axis=0) - corner) for ends in (start, end))
     between = (above * below < 0) & (np.minimum(abs(above), abs(below)) > least)
     rows, least = np.column_stack([edges[i[between]], facets[j[between]]]), least[between]
     apart = (rows[:, :2, None] != rows[:, None, 2:]).all(axis=(1, 2))
@@ -181,8 +182,8 @@ def _near(vertices, edges, facets):
             longest = reach[some].max()
             mine = mine[within(centre[mine], middle[some], longest)]
             near = cKDTree(centre[mine]).sparse_distance_matrix(cKDTree(middle[some]), longest, output_type="ndarray")
-            near = near[near["v"] <= reach[some[near["j"]]]]
-            numbers.append(np.array([some[near["j"]], mine[near["i"]]]))
+            i, j = some[near["j"]], mine[near["i"]]
+            numbers.append(np.array([i, j])[:, near["v"] <= reach[i]])
     return np.concatenate(numbers, axis=1)
 
 
