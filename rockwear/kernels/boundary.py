@@ -47,9 +47,9 @@ def volume(vertices, facets, origin=None):
     return float(np.linalg.det(corners).sum()) / (2 if vertices.shape[1] == 2 else 6)
 
 
-def altitudes(vertices, facets):
-    """(m,) smallest altitude of each triangle, or the length of each segment."""
-    size = np.linalg.norm(area_vectors(vertices, facets), axis=1)
+def altitudes(vertices, facets, areas=None):
+    """(m,) m, smallest altitude of each triangle, or the length of each segment. areas: area_vectors, if known."""
+    size = np.linalg.norm(area_vectors(vertices, facets) if areas is None else areas, axis=1)
     if vertices.shape[1] == 2:
         return size
     corners = vertices[facets]

@@ -142,6 +142,8 @@ class Mesh:
             areas = area_vectors(self.vertices, self.facets)
             feather = (self.bends(areas) < self.sharp) & (self.slope(self.vertices, areas) < 0)
             feather &= self.ways[self.seam].any(axis=(1, 2, 3))
+            if not feather.any():
+                break
             seam, beside = self.seam[feather], self.beside[feather]
             count = np.bincount(seam.ravel(), minlength=len(self.vertices))[:, None]
             aim = np.zeros_like(self.vertices)

@@ -153,7 +153,7 @@ class WornBoundary(Mesh):
         gain = -np.einsum("ni,ni->n", gradient, way)
         weights = np.where(gain > least, weights, 0.0)
         motion = way * (weights / np.where(gain > least, gain, 1.0))[:, None]
-        return motion, weights, np.linalg.norm(motion, axis=1) / self._room()
+        return motion, weights, np.linalg.norm(motion, axis=1) / self._room(areas)
 
     def _shares(self, areas):
         """(m, d) of each facet's volume by its vertices: equal ones, but for vertices that what is fixed holds."""
@@ -182,10 +182,10 @@ class WornBoundary(Mesh):
             weights = weights - given + np.bincount(k[rim], (given / np.maximum(rims, 1))[j[rim]], n)
         return weights
 
-    def _room(self):
+    def _room(self, areas):
         """(n,) m, the smallest altitude around each vertex."""
         room = np.full(len(self.vertices), np.inf)
-        height = altitudes(self.vertices, self.facets)
+        height = altitudes(self.vertices, self.facets, areas)
         np.minimum.at(room, self.facets.ravel(), np.repeat(height, self.dimension))
         return room
 
@@ -277,7 +277,7 @@ class WornBoundary(Mesh):
         before, after = area_vectors(self.vertices, self.facets), area_vectors(fresh, self.facets)
         cosine = np.einsum("ni,ni->n", before, after)
         cosine = cosine - TURN * np.linalg.norm(before, axis=1) * np.linalg.norm(after, axis=1)
-        height, was = altitudes(fresh, self.facets), altitudes(self.vertices, self.facets)
+        height, was = altitudes(fresh, self.facets, after), altitudes(self.vertices, self.facets, before)
         folded = np.zeros(len(fresh), bool)
         folded[self.facets[(cosine <= 0) | ((height < SLIVER * self.size) & (height < was))]] = True
         was_bent, bent = self.bends(before), self.bends(after)

@@ -1,64 +1,16 @@
-"""Boundaries of facets: what is refused, and wear that takes exactly the demanded volume without a fold."""
+"""Wear of boundaries: each update takes exactly the demanded volume, without a fold."""
 import math
-from fractions import Fraction
 
 import numpy as np
 import pytest
 
-from rockwear.kernels.boundary import (
-    altitudes, area_vectors, check_boundary, crossings, distance, nearest_on_triangle, prism, refine, segments,
-    volume)
-from rockwear.kernels.checks import ParameterError
-from rockwear.kernels.polygon import tooth
-from rockwear.kernels.remeshing import CROWDED, Mesh
+from rockwear.kernels.boundary import altitudes, area_vectors, check_boundary, crossings, prism, refine, segments
 from rockwear.kernels.worn_boundary import LEAST_STRIDE, STRIDE, Folded, WornAway, WornBoundary
-
-SQUARE = np.array([[0, 0], [1, 0], [1, 1], [0, 1.0]]) * 0.01
-BLADE = np.array([[-1, 0], [1, 0], [1, 20], [-1, 20.0]]) * 1e-3
-TOOTH = tooth(height=0.07, width=0.045, rake=0.0, clearance=math.radians(3), tip_radius=4e-3)
-
-
-def cube(size=1.3e-3):
-    return prism(SQUARE, 0.01, size)
-
-
-def ring(sides, radius=0.01):
-    angle = 2 * np.pi * np.arange(sides) / sides
-    return segments(radius * np.column_stack([np.cos(angle), np.sin(angle)]))
-
-
-def sphere(fineness=4, radius=0.01):
-    """An octahedron whose facets are cut in four again and again, its corners on the sphere."""
-    vertices = np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]], float)
-    facets = np.array([[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]])
-    for _ in range(fineness):
-        a, b, c = (vertices[facets[:, k]] for k in range(3))
-        corners = np.stack([a, b, c, a + b, b + c, c + a])
-        corners /= np.linalg.norm(corners, axis=2, keepdims=True)
-        parts = [corners[[0, 3, 5]], corners[[3, 1, 4]], corners[[5, 4, 2]], corners[[3, 4, 5]]]
-        triangles = np.concatenate([part.transpose(1, 0, 2) for part in parts])
-        vertices, number = np.unique(triangles.reshape(-1, 3).round(12), axis=0, return_inverse=True)
-        facets = number.reshape(-1, 3)
-    return vertices * radius, facets
+from tests.kernels.shapes import BLADE, SQUARE, TOOTH, cube, exact_volume, ring, sphere
 
 
 def sizes(boundary):
     return np.linalg.norm(area_vectors(boundary.vertices, boundary.facets), axis=1)
-
-
-def exact_volume(vertices, facets):
-    """In rational numbers, from the very bits of the coordinates."""
-    points = [[Fraction(x) for x in point] for point in vertices.tolist()]
-    total = Fraction(0)
-    for facet in facets.tolist():
-        if len(facet) == 2:
-            (a, b), (c, d) = (points[i] for i in facet)
-            total += a * d - b * c
-        else:
-            a, b, c = (points[i] for i in facet)
-            total += (a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0])
-                      + a[2] * (b[0] * c[1] - b[1] * c[0]))
-    return total / math.factorial(len(facets[0]))
 
 
 def sharpest(boundary):
@@ -68,102 +20,6 @@ def sharpest(boundary):
     a, b = boundary.joined.T
     return float(np.einsum("ij,ij->i", normals[a], normals[b]).min())
 
-
-# ---- what is refused
-
-@pytest.mark.parametrize("make", [cube, lambda: ring(20), sphere, lambda: prism(TOOTH, 0.02, 3e-3)])
-def test_sound_boundaries_pass(make):
-    vertices, facets = check_boundary(*make())
-    assert volume(vertices, facets) > 0
-    assert float(exact_volume(vertices, facets)) == pytest.approx(volume(vertices, facets), rel=1e-12)
-
-
-def damaged(kind):
-    vertices, facets = cube()
-    if kind == "hole":
-        return vertices, facets[:-1]
-    if kind == "flipped":
-        facets[7] = facets[7, ::-1]
-    if kind == "inside out":
-        return vertices, facets[:, ::-1]
-    if kind == "flat":
-        vertices[facets[3, 0]] = vertices[facets[3, 1]]
-    if kind == "nan":
-        vertices[5, 1] = np.nan
-    if kind == "crossing":
-        return np.vstack([vertices, vertices + 5e-3]), np.vstack([facets, facets + len(vertices)])
-    if kind == "unknown":
-        facets[0, 0] = len(vertices)
-    return vertices, facets
-
-
-@pytest.mark.parametrize("kind, words", [
-    ("hole", "closed: it has holes"), ("flipped", "some facets are flipped"), ("inside out", "normals outwards"),
-    ("flat", "free of degenerate facets"), ("nan", "finite"), ("unknown", "known vertices"),
-    ("crossing", "run through each other")])
-def test_damaged_boundaries_are_refused(kind, words):
-    with pytest.raises(ParameterError, match=words):
-        check_boundary(*damaged(kind), name="stl")
-
-
-@pytest.mark.parametrize("facets, words", [([[0, 1], [1, 2], [2, 3]], "holes"), ([[0, 1], [2, 1], [2, 3], [3, 0]], "flipped")])
-def test_damaged_outlines_are_refused(facets, words):
-    with pytest.raises(ParameterError, match=words):
-        check_boundary(SQUARE, facets)
-
-
-def test_a_tool_without_a_free_facet_is_refused():
-    vertices, facets = cube()
-    with pytest.raises(ParameterError, match="at least one free"):
-        WornBoundary(vertices=vertices, facets=facets, fixed=np.ones(len(facets), bool))
-
-
-# ---- meshes
-
-@pytest.mark.parametrize("make", [cube, lambda: ring(7), lambda: segments(TOOTH)])
-def test_refining_keeps_the_shape_and_the_boundary_closed(make):
-    vertices, facets = check_boundary(*make())
-    fine = check_boundary(*refine(vertices, facets, 7e-4))
-    assert volume(*fine) == pytest.approx(volume(vertices, facets), rel=1e-12)
-    corners = fine[0][fine[1]]
-    assert np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max() <= 7e-4 * (1 + 1e-9)
-
-
-def test_a_prism_has_the_volume_of_its_outline():
-    vertices, facets = check_boundary(*cube(2e-3))
-    assert volume(vertices, facets) == pytest.approx(1e-6, rel=1e-12)
-    assert altitudes(vertices, facets).min() > 0.5e-3
-
-
-def test_segments_that_cross_are_found():
-    bow = np.array([[0, 0], [1, 1], [1, 0], [0, 1.0]])
-    assert len(crossings(bow, np.array([[0, 1], [1, 2], [2, 3], [3, 0]]))) == 1
-    assert len(crossings(*segments(TOOTH))) == 0
-
-
-def test_triangles_that_run_through_each_other_are_found():
-    corner = np.vstack([np.zeros(3), np.eye(3)])
-    facets = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
-    both = np.vstack([facets, facets + 4])
-    assert len(crossings(np.vstack([corner, corner + 0.2]), both)) == 3
-    assert len(crossings(np.vstack([corner, corner + 0.4]), both)) == 0
-    assert len(crossings(np.vstack([20 * corner - 5, corner]), both)) == 0
-    assert len(crossings(np.vstack([20 * corner - 0.2, corner]), both)) == 0
-    assert len(crossings(np.vstack([20 * corner - [0.2, 0.2, -0.5], corner]), both)) == 3
-    assert len(crossings(*sphere())) == 0
-    vertices = np.vstack([corner, corner + 0.2, corner + 5])
-    for moved, found in (range(4), 3), (range(4, 8), 3), ([5], 1), ([0], 0), (range(8, 12), 0):
-        assert len(crossings(vertices, np.vstack([both, facets + 8]), np.isin(range(12), moved))) == found
-
-
-@pytest.mark.parametrize("point, nearest", [
-    ((0.2, 0.2, 1), (0.2, 0.2, 0)), ((-1, 0.5, 1), (0, 0.5, 0)), ((2, -1, 0), (1, 0, 0)), ((1, 1, 3), (0.5, 0.5, 0))])
-def test_nearest_point_of_a_triangle(point, nearest):
-    triangle = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0.0]])
-    assert nearest_on_triangle(np.array(point, float), triangle) == pytest.approx(np.array(nearest, float))
-
-
-# ---- wear
 
 @pytest.mark.parametrize("make", [cube, lambda: refine(*segments(TOOTH), 2e-3), sphere])
 @pytest.mark.parametrize("part", [1e-6, 1e-4, 1e-2])
@@ -226,11 +82,11 @@ def test_a_sphere_worn_evenly_stays_one_to_second_order():
 
 
 def test_a_cube_worn_evenly_stays_a_cube():
-    vertices, facets = cube()
+    vertices, facets = cube(2e-3)
     boundary = WornBoundary(vertices=vertices, facets=facets)
-    for _ in range(200):
-        boundary.wear(sizes(boundary) * 4e-3 * boundary.first_volume / sizes(boundary).sum())
-    # Facets are a fifth of the side by now, and its edges known to a part of that.
+    for _ in range(50):
+        boundary.wear(sizes(boundary) * 1.6e-2 * boundary.first_volume / sizes(boundary).sum())
+    # Facets are a third of the side by now, and the position of its edges known to a part of that.
     side = 0.2**(1 / 3) * 0.01
     assert np.ptp(boundary.vertices, axis=0) == pytest.approx([side] * 3, rel=1e-2)
     inner = np.abs(boundary.vertices - [0.005, 0.005, 0.0]).max(axis=1)
@@ -251,7 +107,7 @@ def test_a_worn_face_recedes_and_leaves_its_neighbours_plane():
 
 
 def battered(boundary, centre, reach, part, chance):
-    """Uneven wear of what looks forwards and downwards near the tip."""
+    """Uneven wear of the facets near the tip whose normals look forwards or downwards."""
     areas = area_vectors(boundary.vertices, boundary.facets)
     away = boundary.vertices[boundary.facets].mean(axis=1)[:, :2] - centre
     demanded = np.maximum(areas[:, 0], 0) + np.maximum(-areas[:, 1], 0)
@@ -265,7 +121,7 @@ def fixed(vertices, facets):
 
 
 def worn_down_to(left, boundary, reach):
-    """The boundary after battered wear, checked in each update by its own volume."""
+    """Uneven wear down to this part of the volume: each update takes its volume, folds nothing and keeps what is fixed."""
     first, chance = boundary.vertices, np.random.default_rng(5)
     sharp = sharpest(boundary)
     while boundary.volume > left * boundary.first_volume:
@@ -282,24 +138,25 @@ def worn_down_to(left, boundary, reach):
     assert abs(boundary.volume_balance()["unexplained"]) < 1e-12 * boundary.first_volume
 
 
-@pytest.mark.parametrize("segment, reach", [(1e-3, 5e-3), (2e-3, 10e-3), (1e-3, 15e-3), (2e-3, 20e-3), (1e-3, 25e-3)])
+@pytest.mark.parametrize("segment, reach", [
+    (1e-3, 5e-3), (2e-3, 10e-3), (1.5e-3, 15e-3), (2e-3, 20e-3), (1.5e-3, 25e-3)])
 def test_heavy_uneven_wear_folds_nothing_in_the_plane(segment, reach):
     vertices, facets = refine(*segments(TOOTH), segment)
     worn_down_to(0.52, WornBoundary(vertices=vertices, facets=facets, fixed=fixed(vertices, facets)), reach)
 
 
-@pytest.mark.parametrize("size, left", [(5e-3, 0.7), (3e-3, 0.9)])
-def test_heavy_uneven_wear_folds_nothing_in_space(size, left):
-    vertices, facets = prism(TOOTH, 0.02, size)
+@pytest.mark.parametrize("size, width, left", [(6e-3, 0.02, 0.7), (3e-3, 0.01, 0.9)])
+def test_heavy_uneven_wear_folds_nothing_in_space(size, width, left):
+    vertices, facets = prism(TOOTH, width, size)
     worn_down_to(left, WornBoundary(vertices=vertices, facets=facets, fixed=fixed(vertices, facets)), 0.02)
 
 
-@pytest.mark.parametrize("make, depth", [(lambda: refine(*segments(TOOTH), 0.5e-3), 5e-6),
-                                         (lambda: refine(*segments(TOOTH), 1e-3), 5e-6),
-                                         (lambda: refine(*segments(TOOTH), 2e-3), 5e-6),
-                                         (lambda: prism(TOOTH, 0.01, 4e-3), 5e-6)])
-def test_a_clearance_face_worn_evenly_stays_a_face_that_meets_the_back(make, depth):
-    """Exact: the half-plane beyond the line 10 mm inside the old face is gone, what else there was is left."""
+@pytest.mark.parametrize("make, updates", [(lambda: refine(*segments(TOOTH), 0.5e-3), 500),
+                                           (lambda: refine(*segments(TOOTH), 1e-3), 500),
+                                           (lambda: refine(*segments(TOOTH), 2e-3), 500),
+                                           (lambda: prism(TOOTH, 0.008, 4e-3), 100)])
+def test_a_clearance_face_worn_evenly_stays_a_face_that_meets_the_back(make, updates):
+    """Exact: a layer of 10 mm is gone along the clearance face, and all else is left."""
     vertices, facets = make()
     boundary = WornBoundary(vertices=vertices, facets=facets, fixed=fixed(vertices, facets))
     outward = np.array([-math.sin(math.radians(3)), -math.cos(math.radians(3)), 0.0][:boundary.dimension])
@@ -308,26 +165,27 @@ def test_a_clearance_face_worn_evenly_stays_a_face_that_meets_the_back(make, dep
         areas = area_vectors(boundary.vertices, boundary.facets) @ outward
         return np.where(~boundary.fixed & (areas > 0.8 * sizes(boundary)), areas, 0.0)
 
-    for _ in range(500):
-        before, demanded = boundary.volume + boundary.broken_off, 2e-5 * face()
+    for _ in range(updates):
+        before, demanded = boundary.volume + boundary.broken_off, 0.01 / updates * face()
         boundary.wear(demanded)
         assert before - boundary.volume - boundary.broken_off == pytest.approx(demanded.sum(), rel=1e-9)
     corners = boundary.vertices[boundary.facets[face() > 0]].reshape(-1, boundary.dimension)
     gone = (vertices @ outward).max() - corners @ outward
-    assert gone[corners[:, 0] < -15e-3] == pytest.approx(0.01, abs=depth)
-    # The back keeps its line (plane), and ends where the face meets it.
+    assert gone[corners[:, 0] < -15e-3] == pytest.approx(0.01, abs=5e-6)
+    # The back keeps its line (plane) and ends where the face meets it.
     back = boundary.vertices[boundary.facets[boundary.fixed]].reshape(-1, boundary.dimension)
     back = back[back[:, 0] < -0.0449]
     assert back[:, 0] == pytest.approx(-0.045, abs=1e-15)
-    assert back[:, 1].min() == pytest.approx(vertices[vertices[:, 0] < -0.0449, 1].min() + 0.01 / math.cos(math.radians(3)),
-                                             abs=10 * depth)
+    corner = vertices[vertices[:, 0] < -0.0449, 1].min() + 0.01 / math.cos(math.radians(3))
+    assert back[:, 1].min() == pytest.approx(corner, abs=5e-5)
     assert boundary.broken_off < 1e-3 * boundary.removed
 
 
 @pytest.mark.parametrize("make", [lambda: refine(*segments(BLADE), 1e-3), lambda: prism(BLADE, 0.01, 2e-3)])
 def test_a_blade_worn_through_from_both_sides_ends_before_its_faces_cross(make):
     vertices, facets = make()
-    boundary = WornBoundary(vertices=vertices, facets=facets, fixed=(vertices[facets, 1] > BLADE[:, 1].max() - 1e-9).all(axis=1))
+    top = (vertices[facets, 1] > BLADE[:, 1].max() - 1e-9).all(axis=1)
+    boundary = WornBoundary(vertices=vertices, facets=facets, fixed=top)
     away = vertices[facets].mean(axis=1) - [0, 0.01, 0][:vertices.shape[1]]
     sides = abs(area_vectors(vertices, facets)[:, 0]) * np.exp(-((away / 3e-3)**2)[:, 1:].sum(axis=1))
     with pytest.raises(Folded, match="worn through"):
@@ -339,7 +197,7 @@ def test_a_blade_worn_through_from_both_sides_ends_before_its_faces_cross(make):
 
 
 @pytest.mark.parametrize("make", [lambda: refine(*segments(SQUARE), 1e-3), cube])
-def test_a_vertex_of_worn_and_protected_facets_slides_along_the_protected_ones(make):
+def test_a_vertex_of_worn_and_fixed_facets_slides_along_the_fixed_ones(make):
     vertices, facets = make()
     boundary = WornBoundary(vertices=vertices, facets=facets, fixed=(vertices[facets, 0] < 1e-9).all(axis=1))
     count = int(boundary.fixed.sum())
@@ -351,54 +209,27 @@ def test_a_vertex_of_worn_and_protected_facets_slides_along_the_protected_ones(m
     assert boundary.removed + boundary.pending.sum() + boundary.kept == pytest.approx(boundary.archard_volume, rel=1e-9)
     wall = boundary.vertices[boundary.facets[boundary.fixed]].reshape(-1, boundary.dimension)
     assert wall[:, 0] == pytest.approx(0.0, abs=1e-15) and wall[:, 1].max() == pytest.approx(0.006, abs=1e-5)
-    # What is missed there has gone where it was: no face is without.
+    # Facets are spread again over the worn and the fixed faces.
     assert boundary.fixed.sum() < count and (altitudes(boundary.vertices, boundary.facets) > 0.2 * boundary.size).all()
 
 
-@pytest.mark.parametrize("make, off", [(lambda: refine(*segments(TOOTH), 1e-3), 1e-8), (cube, 5e-5)])
-def test_crowded_facets_are_given_to_where_they_are_missed_and_nothing_else_changes(make, off):
-    mesh = Mesh(vertices=make()[0], facets=make()[1])
-    first, facets, chance = mesh.vertices.copy(), mesh.facets.copy(), np.random.default_rng(2)
-    mesh.pending = chance.random(len(facets))
-    # Vertices of flat places go to one of their neighbours, nearly: the shape is the same, the facets are crowded.
-    for vertex in chance.permutation(len(first))[:len(first) // 4]:
-        if mesh._sharpness(vertex)[-1] < 1e-12:
-            to = chance.choice(mesh.around[mesh.around[:, 0] == vertex, 1])
-            mesh.vertices[vertex] += 0.9 * (mesh.vertices[to] - mesh.vertices[vertex])
-            if (altitudes(mesh.vertices, facets) < 0.02 * mesh.size).any() or len(crossings(mesh.vertices, facets)):
-                mesh.vertices[vertex] = first[vertex]
-    crowded = (altitudes(mesh.vertices, facets) < CROWDED * mesh.size).sum()
-    before = exact_volume(mesh.vertices, mesh.facets)
-    assert crowded > 10 and mesh.even_out()
-    while mesh.even_out():
-        pass
-    assert (altitudes(mesh.vertices, mesh.facets) < CROWDED * mesh.size).sum() < 0.2 * crowded
-    check_boundary(mesh.vertices, mesh.facets)
-    assert abs(float(exact_volume(mesh.vertices, mesh.facets) - before)) < 1e-14 * float(before)
-    assert max(distance(mesh.vertices, first, facets).max(), distance(first, mesh.vertices, mesh.facets).max()) < off
-    assert mesh.pending.sum() == pytest.approx(np.random.default_rng(2).random(len(facets)).sum(), rel=1e-12)
-    # A facet is booked for the first one that it lies on.
-    middle = mesh.vertices[mesh.facets].mean(axis=1)
-    assert np.linalg.norm(middle - first[facets[mesh.place]].mean(axis=1), axis=1).max() < 0.02
-
-
-@pytest.mark.parametrize("make", [lambda: refine(*segments(BLADE), 1e-3), lambda: prism(BLADE, 0.01, 2e-3)])
+@pytest.mark.parametrize("make", [lambda: refine(*segments(BLADE), 1e-3), lambda: prism(BLADE, 0.006, 2e-3)])
 @pytest.mark.parametrize("reach", [2e-3, 4e-3])
 def test_a_feather_edge_breaks_off_and_is_no_wear(make, reach):
-    """The blade's sides are worn, most at the end, which nothing rubs: it becomes a wedge, then a feather."""
+    """The sides are worn, most near the end, which is not: the blade becomes a wedge, then a feather edge."""
     vertices, facets = make()
     boundary = WornBoundary(vertices=vertices, facets=facets)
     while boundary.volume > 0.7 * boundary.first_volume:
         height = boundary.vertices[boundary.facets].mean(axis=1)[:, 1]
         sides = abs(area_vectors(boundary.vertices, boundary.facets)[:, 0]) * np.exp(-height / reach)
-        boundary.wear(1e-3 * boundary.first_volume * sides / sides.sum())
+        boundary.wear(3e-3 * boundary.first_volume * sides / sides.sum())
         assert sharpest(boundary) > -0.9
     check_boundary(boundary.vertices, boundary.facets)
     balance = boundary.volume_balance()
     assert 0 < balance["broken_off"] < 0.1 * balance["removed"]
     assert balance["removed"] + balance["waiting"] == pytest.approx(balance["archard"], rel=1e-9)
     assert abs(balance["unexplained"]) < 1e-12 * boundary.first_volume
-    # The end has gone back by about the length over which it is worn.
+    # The end has receded by about the length over which the sides are worn.
     assert 0.3 * reach < boundary.vertices[:, 1].min() < 3 * reach
 
 
@@ -416,14 +247,15 @@ def test_what_waits_is_less_than_the_least_stride_of_a_layer_of_facets():
 
 @pytest.mark.parametrize("seed", range(8))
 def test_a_little_wear_of_single_large_facets_leaves_no_round_off_that_cannot_move(seed):
-    """10 of 40 such tools ended as folded: the last digits of an update were booked on a facet of the shank."""
+    """Round-off assigned to a facet of the shank, which cannot move, ended 10 of 40 such tools as folded."""
     chance = np.random.default_rng(22 + seed)
     vertices, facets = prism(TOOTH, 0.05, 0.02)
     vertices = vertices + np.array([0.3, 0.1, 0.2]) * chance.uniform(-1, 1)
     boundary = WornBoundary(vertices=vertices, facets=facets, fixed=fixed(vertices, facets))
     for _ in range(20):
         demanded, one = np.zeros(len(facets)), chance.choice(np.flatnonzero(~boundary.fixed))
-        demanded[one] = sizes(boundary)[one] * altitudes(boundary.vertices, boundary.facets)[one] * 10**chance.uniform(-4, -3)
+        layer = sizes(boundary)[one] * altitudes(boundary.vertices, boundary.facets)[one]
+        demanded[one] = layer * 10**chance.uniform(-4, -3)
         boundary.wear(demanded)
         assert not boundary.pending[boundary.fixed].any()
     # What is less than the least stride waits.
@@ -440,8 +272,8 @@ def test_little_wear_waits_until_it_can_be_done_to_the_last_digit():
     assert boundary.removed == pytest.approx(boundary.archard_volume, rel=1e-9)
 
 
-@pytest.mark.parametrize("make", [cube, lambda: refine(*segments(TOOTH), 2e-3)])
-def test_a_tool_worn_away_is_said_and_keeps_its_book(make):
+@pytest.mark.parametrize("make", [lambda: cube(2.5e-3), lambda: refine(*segments(TOOTH), 4e-3)])
+def test_a_tool_worn_away_is_reported_and_keeps_its_balance(make):
     vertices, facets = make()
     boundary = WornBoundary(vertices=vertices, facets=facets)
     with pytest.raises(WornAway, match="% of the volume"):
@@ -452,7 +284,7 @@ def test_a_tool_worn_away_is_said_and_keeps_its_book(make):
     assert np.isfinite(boundary.vertices).all()
 
 
-def test_one_demand_beyond_the_whole_body_ends_at_once():
+def test_one_demand_of_more_than_the_body_ends_at_once():
     vertices, facets = cube()
     boundary = WornBoundary(vertices=vertices, facets=facets)
     with pytest.raises(WornAway):
