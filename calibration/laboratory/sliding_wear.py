@@ -1,12 +1,13 @@
-"""The laboratory wear test: a block of tool steel under a known load slides on flat rock [Rojek 2003, 6.6, fig. 6.3]."""
+"""The laboratory wear test: a block of tool steel under a known load slides on flat rock [Rojek 2003, 6.6, fig.
+6.3]."""
 import math
 from types import SimpleNamespace
 
 import numpy as np
 from scipy.integrate import quad
-from yade import (
-    Bo1_Sphere_Aabb, Bo1_Wall_Aabb, ForceResetter, Ig2_Wall_Sphere_ScGeom, InsertionSortCollider, InteractionLoop,
-    Ip2_FrictMat_FrictViscoMat_FrictViscoPhys, Law2_ScGeom_FrictViscoPhys_CundallStrackVisco, NewtonIntegrator, O, utils)
+from yade import (Bo1_Sphere_Aabb, Bo1_Wall_Aabb, ForceResetter, Ig2_Wall_Sphere_ScGeom, InsertionSortCollider,
+                  InteractionLoop, Ip2_FrictMat_FrictViscoMat_FrictViscoPhys,
+                  Law2_ScGeom_FrictViscoPhys_CundallStrackVisco, NewtonIntegrator, O, utils)
 
 from rockwear.engines.base import RunEnded
 from rockwear.engines.dead_load import DeadLoad
@@ -52,7 +53,8 @@ GROUPS = parameters.with_defaults(
 
 
 class SquareLattice(ParticleTool):
-    """A rectangle (m) of equal discs in a square lattice, fixed along its top: every disc of a row carries the same load."""
+    """A rectangle (m) of equal discs in a square lattice, fixed along its top: every disc of a row carries the same
+    load."""
 
     def __init__(self, *, width, height, radius, removal, density):
         columns = max(2, round(width / (2 * radius)))
@@ -73,10 +75,11 @@ class SlidingWear(Scene):
     """A block of particles moved over flat rock under a known load. values: {name: value} of all GROUPS.
 
     The plane of the simulation is a slice through the block: all forces and volumes count per metre of thickness,
-    pressure and depth are those of the laboratory. The 100 m of [Rojek 2003] take 855 s; here the wear coefficient is scaled up by
-    `acceleration` and the distance down by the same factor (the first rule of [Rocky]).
+    pressure and depth are those of the laboratory. The 100 m of [Rojek 2003] take 855 s; here the wear coefficient is
+    scaled up by `acceleration` and the distance down by the same factor (the first rule of [Rocky]).
 
-    The block carries the load exactly, see engines.dead_load. What its k is off by is what the contacts dissipate less than
+    The block carries the load exactly, see engines.dead_load. What its k is off by is what the contacts dissipate
+    less than
     mu F s: each that has just closed slips elastically by mu F / kt before it is at Coulomb's limit, and the more
     wear comes on a metre, the more contacts do (its second rule). The first test of
     [Rojek 2003, table 6.2], 42 particles removed:
@@ -85,12 +88,12 @@ class SlidingWear(Scene):
         k returned, off by  -0.027   -0.055   -0.11     -0.38     -2.5  %
 
     at the default slip_step, of which half a step is lost with each such contact, too. With a power of the pressure or
-    modes, the k returned is that of the block as it is: in a random packing a few particles carry all the load, and only
-    a lattice has the nominal pressure.
+    modes, the k returned is that of the block as it is: in a random packing a few particles carry all the load, and
+    only a lattice has the nominal pressure.
     """
 
     def __init__(self, values):
-        self.values = values
+        super().__init__()
         v = self.v = SimpleNamespace(**values)
         require(v.tool_radius_max >= v.tool_radius_min, "tool_radius_max", v.tool_radius_max,
                 f"at least tool_radius_min = {v.tool_radius_min:g}", "m")
@@ -100,12 +103,13 @@ class SlidingWear(Scene):
                 f"inside the hardness table of {v.hardness_table}, {low:g} to {high:g}", "K")
         self.hardness = Hardness(table.kelvin - KELVIN, table.pascal / BRINELL)
         self.law = WEAR_LAWS[v.wear_law].from_values(values, mu=v.tool_mu)
-        require(v.wear_acceleration > 0, "wear_acceleration", v.wear_acceleration, "greater than 0 for a block that is to wear")
+        require(v.wear_acceleration > 0, "wear_acceleration", v.wear_acceleration,
+                "greater than 0 for a block that is to wear")
         width = v.block_width or math.sqrt(v.area)
         self.pressure, self.load = v.force / v.area, v.force / v.area * width
         hardest = float(self.hardness(v.temperature))
-        require(self.pressure < hardest, "force", v.force, f"less than hardness times area, {hardest * v.area:.4g}, where steel "
-                "would flow", "N")
+        require(self.pressure < hardest, "force", v.force,
+                f"less than hardness times area, {hardest * v.area:.4g}, where steel " "would flow", "N")
         outline = np.array([(0, 0), (width, 0), (width, v.block_height), (0, v.block_height)])
         if v.packing == "lattice":
             self.tool = SquareLattice(width=width, height=v.block_height, radius=v.tool_radius_max, removal=v.removal,
@@ -231,9 +235,11 @@ class SlidingWearOutput(Output):
         return {**given, "k_deviation": (ratio - 1, "-"), "expected_depth": (expected, "m"),
                 "worn_depth": (self.scene.depth, "m"), "descent": (self.scene.press.descent, "m"),
                 "distance": (self.scene.slid, "m"), "simulated_distance": (self.scene.slid / v.wear_acceleration, "m"),
-                "simulated_time": (self.scene.time, "s"), "pressure": (self.scene.pressure, "Pa"), "block_width": (self.scene.width, "m"),
-                "temperature_end": (self.scene.temperature(self.scene.slid), "K"), "mass_lost": (erosion.mass_fraction_lost, "-"),
-                "particles_removed": (int(np.sum(~erosion.alive)), "-"), "tool_particles": (self.scene.tool.count, "-")}
+                "simulated_time": (self.scene.time, "s"), "pressure": (self.scene.pressure, "Pa"),
+                "block_width": (self.scene.width, "m"),
+                "temperature_end": (self.scene.temperature(self.scene.slid), "K"),
+                "mass_lost": (erosion.mass_fraction_lost, "-"), "particles_removed": (int(np.sum(~erosion.alive)), "-"),
+                "tool_particles": (self.scene.tool.count, "-")}
 
     def warnings(self):
         return self.scene.wear.warnings()
@@ -246,7 +252,8 @@ class SlidingWearOutput(Output):
                     "worn_by": self.scene.wear.work_used + float(contact.wearing_work.sum()),
                     "not_dissipated": expected - contact.friction}
         mass = {name: value * STEEL.density for name, value in erosion.volume_balance().items()}
-        return {"friction": (friction, "J/m"), "mass": ({"initial": self.scene.tool.area * STEEL.density, **mass}, "kg/m")}
+        return {"friction": (friction, "J/m"),
+                "mass": ({"initial": self.scene.tool.area * STEEL.density, **mass}, "kg/m")}
 
     def model(self):
         """Arrays that stay the same all through a run."""
@@ -257,17 +264,14 @@ class SlidingWearOutput(Output):
         """Arrays that show the scene now."""
         self.scene.bodies.connect()
         erosion = self.scene.tool.erosion
-        return {"time": self.scene.time, "stage": self.scene.stage, "offset": self.scene.bodies.pose.offset, "alive": erosion.alive,
-                "worn_depth": erosion.stored / (2 * self.scene.tool.radii)}
+        return {"time": self.scene.time, "stage": self.scene.stage, "offset": self.scene.bodies.pose.offset,
+                "alive": erosion.alive, "worn_depth": erosion.stored / (2 * self.scene.tool.radii)}
 
     def write_vtk(self, folder, number):
         """tool.NNNN.vtk: diameter, worn depth."""
         shot, alive = self.snapshot(), self.scene.tool.erosion.alive
         vtk.write(folder / f"tool.{number:04d}.vtk", self.scene.tool.positions[alive] + shot["offset"],
                   {"diameter": 2 * self.scene.tool.radii[alive], "worn_depth": shot["worn_depth"][alive]})
-
-    def tables(self):
-        return {}
 
     def progress(self):
         """A few words on how it stands."""

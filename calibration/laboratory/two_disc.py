@@ -19,10 +19,12 @@ from rockwear.scenes.two_disc import drive_pair, programme
 
 GROUPS = [
     BONDS.without("bond_law", "bonding_gap").with_defaults(kn=2e10, kt=2e10, Rn=1e5, Rt=1e5, H=1e10, mu=0.839),
-    Group("test", (Parameter("radius", 1.25e-3, "m", above_zero, "of both discs"),
-                   Parameter("steps", 403, "", integer(10), "points on the longest leg of a path"))),
-    Group("output", (Parameter("out", "", "", text, "folder of the results; out/two_disc when empty, a subfolder a row in a "
-                               "batch"),))]
+    Group("test", (
+        Parameter("radius", 1.25e-3, "m", above_zero, "of both discs"),
+        Parameter("steps", 403, "", integer(10), "points on the longest leg of a path"))),
+    Group("output", (
+        Parameter("out", "", "", text, "folder of the results; out/two_disc when empty, a subfolder a row in a "
+                  "batch"),))]
 AGREEMENT = 1e-6
 """Largest difference between YADE and `drive`, as a fraction of the tensile strength, that is a success."""
 

@@ -1,8 +1,9 @@
 """Uniaxial compression and direct tension: a specimen of bonded rock between two platens [Rojek 2003, 5.1].
 
-The platens are the specimen's own discs at its left and right ends, which move along x at a constant speed, free across it
-and free to turn: each end is perfectly capped and without friction, so that the whole specimen is under uniaxial stress.
-Rough platens hold these discs across and against turning as well.
+The platens are the specimen's own discs at its left and right ends, which move along x at a constant speed, free
+across it
+and free to turn: each end is perfectly capped and without friction, so that the whole specimen is under uniaxial
+stress. Rough platens hold these discs across and against turning as well.
 """
 import math
 from types import SimpleNamespace
@@ -27,7 +28,7 @@ from rockwear.model.rock import Specimen
 from rockwear.run import vtk
 from rockwear.scenes import parameters, yade_scene
 from rockwear.scenes.balances import with_residual
-from rockwear.scenes.output import Output
+from rockwear.scenes.output import Output, crack_table
 from rockwear.scenes.scene import Scene
 
 LOADING = Group("loading", (
@@ -35,7 +36,8 @@ LOADING = Group("loading", (
     Parameter("speed", 0.05, "m/s", speed, "of each platen", "make bench; [Rojek 2003, 5.1] has 0.001"),
     Parameter("platens", "smooth", "", choice("smooth", "rough"), "rough: ends held across and against turning"),
     Parameter("rotation", "free", "", choice("free", "blocked"), "of all discs; blocked: no disc ever turns"),
-    Parameter("grip", 0.0, "m", number(0), "discs with their centres so near an end move with the platen; 0: a largest diameter"),
+    Parameter("grip", 0.0, "m", number(0), "discs with their centres so near an end move with the platen; 0: a "
+              "largest diameter"),
     Parameter("damping", 0.3, "", number(0, 0.95), "Cundall's non-viscous damping", "measured, see UniaxialTest"),
     Parameter("gauge", 0.5, "", number(0.05, 1), "middle part of length and height in which strain is measured"),
     Parameter("drop", 0.5, "", number(0, 1), "the test ends where stress has fallen to this part of its peak"),
@@ -57,21 +59,22 @@ class UniaxialTest(Scene):
     displacements of the discs in the middle of the specimen. (The travel of the platens would count the ends' own
     compliance as rock.)
 
-    Speed: the default is the fastest at which, and below which, strength and E of every packing stay within 2 % of those at
-    0.0125 m/s, for the bonds of [Rojek 2003] and [Rojek 2014], in compression and tension (make bench redraws the curve;
-    calibration/results/uniaxial.md shows it). At 0.1 m/s strengths are up to 4 % too high. A rock of less strength strains
-    less until it fails: load it as much more slowly. Stronger damping delays the rock's relaxation: at 0.7 and 0.2 m/s the
-    tensile strength with the bonds of [Rojek 2003] is 10 % too high. What the damping itself does: their UCS is 182, 186 and
-    189 MPa at 0.1, 0.3 and 0.7 (0.05 m/s).
+    Speed: the default is the fastest at which, and below which, strength and E of every packing stay within 2 % of
+    those at 0.0125 m/s, for the bonds of [Rojek 2003] and [Rojek 2014], in compression and tension (make bench
+    redraws the curve; calibration/results/uniaxial.md shows it). At 0.1 m/s strengths are up to 4 % too high. A rock
+    of less strength strains
+    less until it fails: load it as much more slowly. Stronger damping delays the rock's relaxation: at 0.7 and 0.2
+    m/s the tensile strength with the bonds of [Rojek 2003] is 10 % too high. What the damping itself does: their UCS
+    is 182, 186 and 189 MPa at 0.1, 0.3 and 0.7 (0.05 m/s).
 
     Cundall's damping switches with the sign of each velocity and stiffens what it damps: long before a step of 0.8 of
     the critical one blows up, the discs chatter, and the damping of the chatter drags on the moving specimen. With
-    kt = kn/5 and damping 0.3 it makes E 1 % (lattice) to 4 % (rock of [Rojek 2014]) too high; at 0.7 of the step, or damping 0.2,
-    it is gone. Hence the default of 0.6.
+    kt = kn/5 and damping 0.3 it makes E 1 % (lattice) to 4 % (rock of [Rojek 2014]) too high; at 0.7 of the step, or
+    damping 0.2, it is gone. Hence the default of 0.6.
     """
 
     def __init__(self, values):
-        self.values = values
+        super().__init__()
         v = self.v = SimpleNamespace(**values)
         require(v.radius_max >= v.radius_min, "radius_max", v.radius_max, f"at least radius_min = {v.radius_min:g}",
                 "m")
@@ -221,21 +224,23 @@ class UniaxialOutput(Output):
         balance = {"platen_work": self.scene.platens.work}
         balance.update({name: now - self.scene.base[name] for name, now in self.scene.stored_energy().items()})
         balance.update(rock_friction=self.scene.rock_friction.total, bond_breaking=self.scene.bonds.energy_released,
-                    numerical_damping=self._damped())
+                       numerical_damping=self._damped())
         return {"energy": (with_residual(balance, "platen_work"), "J/m")}
 
     def model(self):
         """Arrays that stay the same all through a run."""
         rock = self.scene.rock
-        return {"rock_positions": rock.positions, "rock_radii": rock.radii, "bonds": rock.pairs, "rock_prescribed": self.scene.prescribed,
-                "gauge": self.scene.inside, "box": np.array([rock.width, rock.height])}
+        return {"rock_positions": rock.positions, "rock_radii": rock.radii, "bonds": rock.pairs,
+                "rock_prescribed": self.scene.prescribed, "gauge": self.scene.inside,
+                "box": np.array([rock.width, rock.height])}
 
     def snapshot(self):
         """Arrays that show the scene now."""
-        broken = np.bincount(self.scene.rock.pairs[self.scene.bonds.status != 0].ravel(), minlength=self.scene.rock.count)
-        return {"time": self.scene.time, "stage": self.scene.stage, "rock_positions": access.rock_positions(self.scene.rock),
-                "displacement": self.scene.displacements(), "broken_bonds": broken, "status": self.scene.bonds.status,
-                "softening": self.scene.bonds.softening()}
+        broken = np.bincount(self.scene.rock.pairs[self.scene.bonds.status !=
+                             0].ravel(), minlength=self.scene.rock.count)
+        return {"time": self.scene.time, "stage": self.scene.stage,
+                "rock_positions": access.rock_positions(self.scene.rock), "displacement": self.scene.displacements(),
+                "broken_bonds": broken, "status": self.scene.bonds.status, "softening": self.scene.bonds.softening()}
 
     def write_vtk(self, folder, number):
         """rock.NNNN.vtk: diameter, broken bonds, displacement."""
@@ -245,8 +250,10 @@ class UniaxialOutput(Output):
                   {"diameter": 2 * self.scene.rock.radii, "broken_bonds": shot["broken_bonds"], "displacement_x": x,
                    "displacement_y": y})
 
+    def tables(self):
+        return crack_table(self.scene.bonds.cracks)
+
     def progress(self):
-        """A few words on how it stands."""
         return f"{self.scene.stress / 1e6:.3g} MPa, {len(self.scene.bonds.cracks)} cracks"
 
 

@@ -50,7 +50,7 @@ def critical_time_step(*, positions, radii, masses, inertias, bonds, kn, kt, fix
     Ratcheting. YADE turns the particles about their full radii and scales the translations up to match, by
     α = (r_i + r_j)/|x_j − x_i|: the shear increment is α t·(u_j − u_i) − (n × t)·(r_i φ_i + r_j φ_j), while the force
     acts at the arms a above. Bonds of overlapping particles are α times as stiff in shear, and K is no longer
-    symmetric where the radii differ. With √(a r/α) as the cutter_radius of either particle it is, and Ω_max is that of the
+    symmetric where the radii differ. With √(a r/α) as the arm of either particle it is, and Ω_max is that of the
     unsymmetric K within 1e-4 (radii 1 to 6 mm, overlaps up to 17 %).
 
     Returns math.inf where nothing resists motion. The eigenvalue is exact to TOLERANCE, on the safe side. Raises
@@ -77,7 +77,7 @@ def critical_time_step(*, positions, radii, masses, inertias, bonds, kn, kt, fix
     if ratcheting_free:
         alpha = (r[i] + r[j]) / distance
         kt = alpha * kt
-        arms = [np.sqrt(np.maximum(cutter_radius, 0.0) * radius / alpha) for cutter_radius, radius in zip(arms, (r[i], r[j]))]
+        arms = [np.sqrt(np.maximum(arm, 0.0) * radius / alpha) for arm, radius in zip(arms, (r[i], r[j]))]
     springs, dashpots = _rows(n, i, j, normal, *arms, kn, kt), _dashpot_rows(n, i, j, normal, cn)
     if ground is not None:
         grounded = _ground_rows(ground, r, d)

@@ -1,4 +1,5 @@
-"""The tool as a closed boundary of facets: segments from an outline, triangles from an STL file or a drawn-out outline."""
+"""The tool as a closed boundary of facets: segments from an outline, triangles from an STL file or a drawn-out
+outline."""
 import warnings
 
 import numpy as np
@@ -60,7 +61,8 @@ class FacetTool:
 
     @property
     def worn_depth(self):
-        """(n,) m by which the surface has gone back from each of its first vertices: from there to what is nearest of it.
+        """(n,) m by which the surface has gone back from each of its first vertices: from there to what is nearest of
+        it.
 
         On a face that is the recession along its normal; at an edge that has become another, the way to the nearest of
         it. It depends on the two shapes alone, whatever vertices and facets they are made of.
@@ -98,9 +100,11 @@ def incentres(triangles):
 
 
 def read_stl(path, *, scale=1.0):
-    """(vertices (n, 3) m, facets (m, 3)) of an STL file, binary or text, its numbers times `scale`; equal corners are one.
+    """(vertices (n, 3) m, facets (m, 3)) of an STL file, binary or text, its numbers times `scale`; equal corners are
+    one.
 
-    Raises ParameterError (stl) for a file that cannot be read, or a surface that is open, flipped, folded or inside out.
+    Raises ParameterError (stl) for a file that cannot be read, or a surface that is open, flipped, folded or inside
+    out.
     """
     positive("scale", scale)
     try:

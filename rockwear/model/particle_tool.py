@@ -29,13 +29,15 @@ def neighbours(positions, radii):
 class ParticleTool:
     """A rigid tool of particles that wear away.
 
-    vertices: (k, 2) m, its outline; positions: (n, 2 or 3) m; radii: (n,) m; area: m2 of the outline, in space m3 of the
-    volume; volumes: (n,) m3, the part that each particle stands for; density: kg/m3; fixed: (n,) bool, particles that the
-    shank holds; surface: (n,) bool, those open to wear at first; pairs: (m, 2), neighbours that cover one another; removal
+    vertices: (k, 2) m, its outline; positions: (n, 2 or 3) m; radii: (n,) m; area: m2 of the outline, in space m3 of
+    the volume; volumes: (n,) m3, the part that each particle stands for; density: kg/m3; fixed: (n,) bool, particles
+    that the shank holds; surface: (n,) bool, those open to wear at first; pairs: (m, 2), neighbours that cover one
+    another; removal
     and thickness: of kernels.erosion.
     """
 
-    def __init__(self, *, vertices, positions, radii, area, volumes, density, fixed, surface, pairs, removal, thickness=1.0):
+    def __init__(self, *, vertices, positions, radii, area, volumes, density, fixed, surface, pairs, removal,
+                 thickness=1.0):
         self.vertices, self.positions, self.radii, self.area = vertices, positions, radii, area
         self.volumes, self.density, self.fixed, self.count = volumes, density, fixed, len(radii)
         self.masses = density * volumes
@@ -43,7 +45,8 @@ class ParticleTool:
                                surface=np.flatnonzero(surface & ~fixed), fixed=np.flatnonzero(fixed))
 
     def foremost(self, below):
-        """Largest x reached by particles with any part below the height `below` (both m, in the tool's own frame), as long
+        """Largest x reached by particles with any part below the height `below` (both m, in the tool's own frame), as
+        long
         as they are not worn away; -inf for none."""
         low = (self.positions[:, 1] - self.radii < below) & self.erosion.alive
         return float((self.positions[low, 0] + self.radii[low]).max(initial=-np.inf))
@@ -52,7 +55,8 @@ class ParticleTool:
 def fill(vertices, *, radius_min, radius_max, seed):
     """{"positions": (n, 2) m, "radii": (n,) m} of a packing that fills a polygon (k, 2) m; kept in the cache."""
     def make():
-        filled = packing.pack(polygon=vertices, radius_min=radius_min, radius_max=radius_max, porosity=POROSITY, seed=seed)
+        filled = packing.pack(polygon=vertices, radius_min=radius_min, radius_max=radius_max, porosity=POROSITY,
+                              seed=seed)
         return {"positions": filled.positions, "radii": filled.radii}
 
     return cached(make, fill=np.asarray(vertices).tolist(), radius_min=radius_min, radius_max=radius_max, seed=seed,
@@ -60,12 +64,15 @@ def fill(vertices, *, radius_min, radius_max, seed):
 
 
 def fitted_conductance(*, radius_min, radius_max, seed, conductivity):
-    """W/K, one conductance for every pair of `neighbours`, fitted on a square of the same packing as `fill` has: the outline
+    """W/K, one conductance for every pair of `neighbours`, fitted on a square of the same packing as `fill` has: the
+    outline
     itself may be any shape. conductivity: W/m K."""
     def make():
         side = 50 * radius_max
-        square = packing.pack(box=(side, side), radius_min=radius_min, radius_max=radius_max, porosity=POROSITY, seed=seed)
-        return {"conductance": calibrated_conductance(positions=square.positions, conductivity=conductivity, conductance=1.0,
+        square = packing.pack(box=(side, side), radius_min=radius_min, radius_max=radius_max, porosity=POROSITY,
+                              seed=seed)
+        return {"conductance": calibrated_conductance(positions=square.positions, conductivity=conductivity,
+                                                      conductance=1.0,
                                                       edges=neighbours(square.positions, square.radii))[:1]}
 
     return float(cached(make, fit=[radius_min, radius_max, seed, conductivity], porosity=POROSITY, gap=NEIGHBOUR_GAP,
@@ -75,11 +82,12 @@ def fitted_conductance(*, radius_min, radius_max, seed, conductivity):
 class Tool(ParticleTool):
     """Particles that fill an outline (k, 2) m, each standing for its part of the outline's area times 1 m.
 
-    radius_min, radius_max: m; removal: "volume", "depth" or "none" (kernels.erosion); density: kg/m3 of the outline's area,
-    which particles carry through their share of it. The shank fixes particles at the top and the back (or at the "top"
-    alone): they are no surface. `cells` (kernels.voronoi.Cells) are the parts of the outline. Every other particle whose Voronoi cell reaches the outline is a surface particle, and a
-    particle that goes uncovers those whose cells have a face with its own: by their gaps some across a pore would stay out
-    of contact, and rock would come to lie in them.
+    radius_min, radius_max: m; removal: "volume", "depth" or "none" (kernels.erosion); density: kg/m3 of the outline's
+    area, which particles carry through their share of it. The shank fixes particles at the top and the back (or at
+    the "top" alone): they are no surface. `cells` (kernels.voronoi.Cells) are the parts of the outline. Every other
+    particle whose Voronoi cell reaches the outline is a surface particle, and a
+    particle that goes uncovers those whose cells have a face with its own: by their gaps some across a pore would
+    stay out of contact, and rock would come to lie in them.
     """
 
     def __init__(self, *, vertices, radius_min, radius_max, seed, removal, density, shank="top and back"):

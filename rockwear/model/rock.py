@@ -19,7 +19,8 @@ TILE = 8000
 
 
 def graded_radius(*, top, fine_depth, grading_factor, over):
-    """A field of the radius factor: 1 from the surface y = top down to fine_depth, rising to `grading_factor` over `over` m."""
+    """A field of the radius factor: 1 from the surface y = top down to fine_depth, rising to `grading_factor` over
+    `over` m."""
     def factor(points):
         depth = top - points[:, 1]
         return 1 + (grading_factor - 1) * np.clip((depth - fine_depth) / over, 0, 1)
@@ -41,21 +42,23 @@ def pack_uniform(box, *, radius_min, radius_max, **common):
     return packing.tile(part, repeats)
 
 
-class Assembly:
+class RockAssembly:
     """Particles of thickness 1 m in the plane, or spheres in space, in a box, and the pairs of them that are bonded.
 
     positions: (n, 2 or 3) m; radii: (n,) m; width, height (and depth): m of the box; density: kg/m3 of the bulk; pairs:
-    (m, 2), i < j; strength_factor: (m,), a bond is so many times as strong as the bond law says. Particles carry the mass of
-    the pores, bulk density over solid fraction [Rojek 2014, eq. 63]. `fixed` (n,) bool: particles that do not move.
+    (m, 2), i < j; strength_factor: (m,), a bond is so many times as strong as the bond law says. Particles carry the
+    mass of the pores, bulk density over solid fraction [Rojek 2014, eq. 63]; porosity: of the packing, where it does
+    not fill the box. `fixed` (n,) bool: particles that do not move.
     """
 
-    def __init__(self, *, positions, radii, width, height, density, pairs, strength_factor=None, depth=None):
+    def __init__(self, *, positions, radii, width, height, density,
+                 pairs, strength_factor=None, depth=None, porosity=None):
         self.positions, self.radii, self.density = np.asarray(positions, float), radii, density
         self.width, self.height, self.depth, self.count = width, height, depth, len(radii)
         self.pairs = pairs
         self.strength_factor = np.ones(len(pairs)) if strength_factor is None else strength_factor
         if depth is None:
-            self.porosity = 1 - float(np.sum(np.pi * radii**2)) / (width * height)
+            self.porosity = 1 - float(np.sum(np.pi * radii**2)) / (width * height) if porosity is None else porosity
             self.masses = density / (1 - self.porosity) * np.pi * radii**2
             self.inertias = 0.5 * self.masses * radii**2
         else:
@@ -109,17 +112,18 @@ class Assembly:
                      fitted=lambda: self._fitted_conductance(conductivity))
 
     def _fitted_conductance(self, conductivity):
-        return calibrated_conductance(positions=self.positions, edges=self.pairs, conductance=1.0, conductivity=conductivity)[0]
+        return calibrated_conductance(positions=self.positions, edges=self.pairs,
+                                      conductance=1.0, conductivity=conductivity)[0]
 
 
-class Specimen(Assembly):
+class Specimen(RockAssembly):
     """A box of bonded discs of thickness 1 m.
 
     width, height: m; radius_min, radius_max: m, uniform in between; porosity: 1 - sum of areas over the box's area;
-    seed: of the packing; bonding_gap: largest gap over which particles are bonded [Rojek 2014, eq. 6], m; grading_factor: factor by
-    which radii grow below fine_depth (m) over as much depth again. Strengths of bonds grow with that factor, so that the
-    macroscopic strength stays uniform; in the plane a bond's stiffness sets the macroscopic one whatever the radius.
-    Raises ParameterError naming the parameter.
+    seed: of the packing; bonding_gap: largest gap over which particles are bonded [Rojek 2014, eq. 6], m;
+    grading_factor: factor by which radii grow below fine_depth (m) over as much depth again. Strengths of bonds grow
+    with that factor, so that the macroscopic strength stays uniform; in the plane a bond's stiffness sets the
+    macroscopic one whatever the radius. Raises ParameterError naming the parameter.
     """
 
     def __init__(self, *, width, height, radius_min, radius_max, porosity, seed, bonding_gap, grading_factor=1.0,
@@ -145,30 +149,25 @@ class Specimen(Assembly):
         pairs = packing.contacts(stored["positions"], stored["radii"], bonding_gap)
         require(len(pairs) > len(stored["radii"]), "bonding_gap", bonding_gap, "large enough to bond the packing", "m")
         self.scale, self.radius_max = stored["scale"], radius_max
-        super().__init__(positions=stored["positions"], radii=stored["radii"], width=width, height=height, density=density,
-                         pairs=pairs, strength_factor=self.scale[pairs].mean(axis=1))
+        super().__init__(positions=stored["positions"], radii=stored["radii"], width=width, height=height,
+                         density=density, pairs=pairs, strength_factor=self.scale[pairs].mean(axis=1))
 
 
-class CutOut(Specimen):
-    """The part of a specimen whose particles have their centres inside a polygon (k, 2) m, without loose pieces.
+class CutOut(RockAssembly):
+    """The part of a specimen whose particles have their centres inside a polygon (k, 2) m, without loose pieces."""
 
-    whole: positions and radii of the specimen that it was cut out of; the others as in Specimen.
-    """
-
-    def __init__(self, *, polygon, bonding_gap, **of_the_box):
-        super().__init__(bonding_gap=bonding_gap, **of_the_box)
-        self.polygon, self.whole = np.asarray(polygon, float), (self.positions, self.radii)
-        self.bonding_gap = bonding_gap
-        kept = np.flatnonzero(outline.inside(self.positions, self.polygon))
-        pairs = packing.contacts(self.positions[kept], self.radii[kept], bonding_gap)
+    def __init__(self, specimen, *, polygon, bonding_gap):
+        self.polygon, self.specimen, self.bonding_gap = np.asarray(polygon, float), specimen, bonding_gap
+        kept = np.flatnonzero(outline.inside(specimen.positions, self.polygon))
+        pairs = packing.contacts(specimen.positions[kept], specimen.radii[kept], bonding_gap)
         joined = coo_matrix((np.ones(len(pairs)), pairs.T), shape=(len(kept), len(kept)))
         part = connected_components(joined, directed=False)[1]
         kept = kept[part == np.argmax(np.bincount(part))]
-        for name in ("positions", "radii", "scale", "masses", "inertias", "fixed"):
-            setattr(self, name, getattr(self, name)[kept])
-        self.count = len(kept)
-        self.pairs = packing.contacts(self.positions, self.radii, bonding_gap)
-        self.strength_factor = self.scale[self.pairs].mean(axis=1)
+        positions, radii = specimen.positions[kept], specimen.radii[kept]
+        pairs = packing.contacts(positions, radii, bonding_gap)
+        super().__init__(positions=positions, radii=radii, width=specimen.width, height=specimen.height,
+                         density=specimen.density, pairs=pairs, porosity=specimen.porosity,
+                         strength_factor=specimen.scale[kept][pairs].mean(axis=1))
 
     @cached_property
     def cells(self):
@@ -177,15 +176,17 @@ class CutOut(Specimen):
 
     def _fitted_conductance(self, conductivity):
         # The rock is no box: its conductance is fitted to a square of the packing that it is cut out of.
-        positions, radii = self.whole
+        positions, radii = self.specimen.positions, self.specimen.radii
         size = np.array([self.width, self.height])
-        inside = np.all(abs(positions - size / 2) < min(size.min() / 2, 25 * self.radius_max), axis=1)
+        inside = np.all(abs(positions - size / 2) < min(size.min() / 2, 25 * self.specimen.radius_max), axis=1)
         pairs = packing.contacts(positions[inside], radii[inside], self.bonding_gap)
-        return calibrated_conductance(positions=positions[inside], conductance=1.0, conductivity=conductivity, edges=pairs)[0]
+        return calibrated_conductance(positions=positions[inside],
+                                      conductance=1.0, conductivity=conductivity, edges=pairs)[0]
 
 
-class Arranged(Assembly):
-    """Equal discs of one radius (m) at given places (n, 2) m of a box, the touching ones bonded: lattices and the like."""
+class Arranged(RockAssembly):
+    """Equal discs of one radius (m) at given places (n, 2) m of a box, the touching ones bonded: lattices and the
+    like."""
 
     def __init__(self, *, positions, radius, width, height, density):
         radii = np.full(len(positions), float(radius))
@@ -193,7 +194,7 @@ class Arranged(Assembly):
                          pairs=packing.contacts(np.asarray(positions, float), radii, 1e-6 * radius))
 
 
-class Block(Assembly):
+class Block(RockAssembly):
     """A box of equal spheres: x from 0 to `width` along the cut, y from 0 to `height` upwards, z across by `depth`,
     centred at z = 0, all m.
 
@@ -205,10 +206,12 @@ class Block(Assembly):
     def __init__(self, *, width, height, depth, radius, porosity, seed, bonding_gap, density, bonded=True):
         box = positive("width", width, "m"), positive("height", height, "m"), positive("depth", depth, "m")
         not_negative("bonding_gap", bonding_gap, "m")
-        require(bonding_gap <= radius, "bonding_gap", bonding_gap, f"at most radius = {radius:g}: bonds join neighbours", "m")
+        require(bonding_gap <= radius, "bonding_gap", bonding_gap,
+                f"at most radius = {radius:g}: bonds join neighbours", "m")
 
         def make():
-            made = packing.pack(box=box, radius_min=radius, radius_max=radius, porosity=porosity, seed=seed, jammed=bonded)
+            made = packing.pack(box=box, radius_min=radius, radius_max=radius, porosity=porosity, seed=seed,
+                                jammed=bonded)
             return {"positions": made.positions, "radii": made.radii}
 
         stored = cached(make, box=list(box), radius=radius, porosity=porosity, seed=seed, jammed=bonded)
@@ -217,7 +220,8 @@ class Block(Assembly):
         width, height, depth = (self.loosened * length for length in box)
         positions = self.loosened * (places - (0.0, 0.0, 0.5 * box[2]))
         pairs = self._near(positions, radii, bonding_gap)
-        require(not bonded or len(pairs) > len(radii), "bonding_gap", bonding_gap, "large enough to bond the packing", "m")
+        require(not bonded or len(pairs) > len(radii), "bonding_gap",
+                bonding_gap, "large enough to bond the packing", "m")
         super().__init__(positions=positions, radii=radii, width=width, height=height, depth=depth, density=density,
                          pairs=pairs if bonded else pairs[:0])
 

@@ -25,6 +25,7 @@ class Accuracy:
         """The time step (s) of a scene with this critical one. Raises ParameterError for one above it."""
         if not self.time_step > 0:
             return self.time_step_fraction * critical
-        require(self.time_step <= critical, "time_step", self.time_step, f"at most the stable step {critical:.3e} of this scene",
+        require(self.time_step <= critical, "time_step", self.time_step,
+                f"at most the stable step {critical:.3e} of this scene",
                 "s")
         return self.time_step

@@ -20,7 +20,8 @@ class StoredEnergy:
 
     def close(self):
         """The stage ends."""
-        self.closed = {name: self.closed.get(name, 0.0) + (value - self.base[name]) for name, value in self.stored().items()}
+        self.closed = {name: self.closed.get(name, 0.0) + (value - self.base[name]) for name,
+                       value in self.stored().items()}
 
     def changes(self):
         """{name: J} over all stages up to now."""
@@ -38,12 +39,13 @@ class StoredEnergy:
 
 def with_residual(balance, source):
     """The balance {entry: J} with what its entry `source` holds more than all others: `residual`."""
-    return {**balance, "residual": balance[source] - math.fsum(value for name, value in balance.items() if name != source)}
+    return {**balance, "residual": balance[source] - math.fsum(value for name, value in balance.items()
+                                                               if name != source)}
 
 
 def energy_warnings(balance):
     """Lines where an energy balance misses more than ENERGY_MISSED of its largest entry."""
     part = balance["residual"] / max(abs(value) for value in balance.values()) if balance["residual"] else 0.0
     return [] if abs(part) <= ENERGY_MISSED else [
-        f"the energy balance misses {100 * part:.2g} % of its largest entry: forces and wear are no better known than that; "
-        "a smaller sampling_period or time_step_fraction may tell why"]
+        f"the energy balance misses {100 * part:.2g} % of its largest entry: forces and wear are no better known than "
+        "that; a smaller sampling_period or time_step_fraction may tell why"]

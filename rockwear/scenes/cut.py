@@ -28,17 +28,18 @@ SEPARATION_PERIOD = GUARD_PERIOD = 200
 class Cut(Scene):
     """A rigid tool cuts rock.
 
-    rock: a specimen of model.rock; bond_law: of kernels.bond_laws, which also gives the stiffness and friction of contacts
-    in the rock; tool: a ToolAssembly; programme: a Programme; accuracy: scenes.accuracy.Accuracy; heat, expansion, gravity:
-    of scenes.physics, or None; background_damping: 1/s; time_scale: mechanical over physical rate; depth_of_cut: m, to
-    which depth the tool must reach to cut; notes: {name: (value, unit)} of further results; first_temperature: K of a tool
-    without heat.
+    rock: a specimen of model.rock; bond_law: of kernels.bond_laws, which also gives the stiffness and friction of
+    contacts in the rock; tool: a ToolAssembly; programme: a Programme; accuracy: scenes.accuracy.Accuracy; heat,
+    expansion, gravity: of scenes.physics, or None; background_damping: 1/s; time_scale: mechanical over physical
+    rate; depth_of_cut: m, to which depth the tool must reach to cut; notes: {name: (value, unit)} of further results;
+    first_temperature: K of a tool without heat.
 
     In the plane the balances count per metre of thickness.
     """
 
     def __init__(self, *, rock, bond_law, tool, programme, accuracy, depth_of_cut, first_temperature, heat=None,
                  expansion=None, gravity=None, background_damping=0.0, time_scale=1.0, notes=None):
+        super().__init__()
         self.rock, self.bond_law, self.tool, self.programme, self.accuracy = rock, bond_law, tool, programme, accuracy
         self.heat_model, self.expansion_model, self.gravity = heat, expansion, gravity
         self.background_damping, self.time_scale = background_damping, time_scale
@@ -60,7 +61,8 @@ class Cut(Scene):
         self.output = CutOutput(self)
 
     def foremost(self):
-        """x (m) in the tool's frame of the foremost of what is left of it below the rock's surface, -inf for nothing."""
+        """x (m) in the tool's frame of the foremost of what is left of it below the rock's surface, -inf for
+        nothing."""
         return self.tool.foremost(below=self.depth_of_cut)
 
     # ---- YADE
@@ -87,7 +89,8 @@ class Cut(Scene):
 
     def _make_engines(self):
         rock, tool, accuracy = self.rock, self.tool, self.accuracy
-        self.bonds = Bonds(pairs=rock.pairs, law=self.bond_law, strength_factor=rock.strength_factor, clock=lambda: self.time)
+        self.bonds = Bonds(pairs=rock.pairs, law=self.bond_law, strength_factor=rock.strength_factor,
+                           clock=lambda: self.time)
         increment = VelocityIncrement(masses=rock.masses, inertias=rock.inertias, radii=rock.radii, fixed=rock.fixed,
                                       gravity=self.gravity.vector if self.gravity else None)
         tool.make_engines(motion=self.programme.motion, increment=increment, wear_period=accuracy.wear_period,
@@ -109,7 +112,8 @@ class Cut(Scene):
         if not self.heat_model:
             return
         period = max(1, self.steps_in(self.accuracy.heat_period))
-        common = dict(rock=self.rock, bonds=self.bonds, rock_friction=self.rock_friction, tool_contact=self.tool.contact)
+        common = dict(rock=self.rock, bonds=self.bonds, rock_friction=self.rock_friction,
+                      tool_contact=self.tool.contact)
         self.heat = self.heat_model.engine(
             **common, body=self.tool.thermal_body, wear_acceleration=self.tool.wear.acceleration,
             time_scale=self.programme.heat_time_scale, surface_period=self.accuracy.surface_period, period=period)
@@ -123,7 +127,8 @@ class Cut(Scene):
         return BackgroundDamping(rate=rates[0], bodies=range(self.rock.count), period=self.accuracy.damping_period)
 
     def _least_energy(self):
-        """J that the run may hold whatever the tool's work: a heavy particle at five times the tool's speed, a fall by a
+        """J that the run may hold whatever the tool's work: a heavy particle at five times the tool's speed, a fall
+        by a
         radius."""
         rock = self.rock
         fall = float(rock.masses.sum()) * self.gravity.g * float(rock.radii.max()) if self.gravity else 0.0

@@ -9,7 +9,8 @@ from rockwear.scenes import parameters, parts
 from rockwear.scenes.cut import Cut
 from rockwear.scenes.programme import Cycles
 
-GROUPS = [parameters.SPECIMEN, parameters.BONDS, parameters.PLANE_TOOL, parameters.CONTACT, parameters.CYCLES, parameters.WEAR,
+GROUPS = [parameters.SPECIMEN, parameters.BONDS, parameters.PLANE_TOOL, parameters.CONTACT, parameters.CYCLES,
+          parameters.WEAR,
           parameters.HEAT, parameters.ACCURACY]
 
 
@@ -32,13 +33,14 @@ def check_cut(v, seconds):
     require(2 * v.radius_max < v.depth_of_cut < v.height, "depth_of_cut", v.depth_of_cut,
             f"more than a rock particle, {2 * v.radius_max:g}, and less than the specimen's height {v.height:g}", "m")
     require(seconds * v.velocity <= v.width, "cycle_time", v.cycle_time,
-            f"so short that the tool's travel, {seconds * v.velocity:g} m at {v.velocity:g} m/s with the start-up, stays within "
-            f"the specimen's width {v.width:g} m", "s")
+            f"so short that the tool's travel, {seconds * v.velocity:g} m at {v.velocity:g} m/s with the start-up, "
+            f"stays within the specimen's width {v.width:g} m", "s")
 
 
 def box(v):
     """The specimen; it stands for a part of a rock mass: its sides are fixed where no chip can reach them."""
-    rock = Specimen(width=v.width, height=v.height, radius_min=v.radius_min, radius_max=v.radius_max, porosity=v.porosity,
+    rock = Specimen(width=v.width, height=v.height, radius_min=v.radius_min, radius_max=v.radius_max,
+                    porosity=v.porosity,
                     seed=v.seed, bonding_gap=v.bonding_gap, grading_factor=v.grading_factor, fine_depth=v.fine_depth,
                     density=v.rock_density)
     rock.fix("bottom")

@@ -20,12 +20,15 @@ from rockwear.scenes.physics import Gravity
 from rockwear.scenes.programme import LowerAndCut
 from rockwear.scenes.tool_assembly import FacetAssembly, ParticleAssembly
 
-SNAPSHOT = Group("output", (Parameter("snapshot_period", 0.05, "s", parameters.above_zero, "simulated time between the pictures "
+SNAPSHOT = Group("output", (Parameter("snapshot_period", 0.05, "s", parameters.above_zero,
+                                      "simulated time between the pictures "
                                       "of the report"),))
 GROUPS = parameters.with_defaults(
-    [parameters.BLOCK, parameters.BONDS, parameters.SPACE_TOOL, parameters.CONTACT, parameters.LOWERING, parameters.WEAR,
+    [parameters.BLOCK, parameters.BONDS, parameters.SPACE_TOOL, parameters.CONTACT, parameters.LOWERING,
+     parameters.WEAR,
      parameters.HEAT, parameters.ACCURACY, SNAPSHOT],
-    kn=1e6, kt=1e6, Rn=500.0, Rt=5000.0, mu=0.5, tool_kn=1e6, tool_kt=1e6, tool_mu=0.1, contact_damping=0.0, hardness=1.0,
+    kn=1e6, kt=1e6, Rn=500.0, Rt=5000.0, mu=0.5, tool_kn=1e6, tool_kt=1e6, tool_mu=0.1, contact_damping=0.0,
+    hardness=1.0,
     wear_coefficient=0.0, wear_acceleration=1.0, removal="none", heat=False, damping_period=100, rock_sampling_period=8,
     wear_period=10, record_period=2e-3)
 SETTLING = (
@@ -69,14 +72,16 @@ def make_loose(values):
     cutter = tool(v)
     room = 3 * v.radius - v.tip_radius - float(cutter.outline[:, 0].min())
     require(v.start > room, "start", v.start, f"more than {room:g}, for the tooth to clear the box behind it", "m")
-    rock = Block(width=v.width, height=v.height + v.freeboard, depth=v.depth, radius=v.radius, porosity=v.porosity, seed=v.seed,
+    rock = Block(width=v.width, height=v.height + v.freeboard, depth=v.depth, radius=v.radius, porosity=v.porosity,
+                 seed=v.seed,
                  bonding_gap=0.0, density=v.rock_density, bonded=False)
     # So many are fixed that none of the others can slip through.
     rock.fix("bottom", "left", "right", "front", "back", within=2)
     rock.leave_out((rock.positions[:, 1] > v.height - v.radius) & ~rock.fixed)
     programme = LowerAndCut(ways=[("settling", v.settling, (0.0, 0.0)), *ways(v)], start=start(v),
                             damping_rates=[v.settling_damping, v.background_damping, v.background_damping])
-    return Cut(rock=rock, tool=cutter, programme=programme, gravity=Gravity(v.gravity), notes=notes(v), **parts.common(v))
+    return Cut(rock=rock, tool=cutter, programme=programme, gravity=Gravity(v.gravity), notes=notes(v),
+               **parts.common(v))
 
 
 def scaled(values):
@@ -117,7 +122,8 @@ def notes(v):
 
 def tool(v):
     """The tool assembly: spheres in layers, triangles of an outline drawn out across the cut, or an STL file."""
-    common = dict(contact_law=parts.contact_law(v), wear=parts.tool_wear(v), units=SPACE, sampling_period=v.sampling_period)
+    common = dict(contact_law=parts.contact_law(v), wear=parts.tool_wear(v), units=SPACE,
+                  sampling_period=v.sampling_period)
     if v.stl:
         require(not v.heat, "stl", v.stl, "left out with heat = true: heat is for a tool with an outline")
         seen, model = stl_tool(v)

@@ -1,4 +1,5 @@
-"""Dredging: a pick of a cutter head that swings and turns cuts rock, and cools in water in between [Rojek 2014, ch. 5]."""
+"""Dredging: a pick of a cutter head that swings and turns cuts rock, and cools in water in between [Rojek 2014, ch.
+5]."""
 import math
 from types import SimpleNamespace
 
@@ -8,31 +9,34 @@ from rockwear.kernels.checks import require
 from rockwear.kernels.parameter import Group, Parameter, above_zero, duration, flag, integer, number
 from rockwear.kernels.polygon import nearest_on_edges
 from rockwear.kernels.rigid_motion import SwingAndRotation
-from rockwear.model.rock import CutOut
+from rockwear.model.rock import CutOut, Specimen
 from rockwear.scenes import parameters, parts
 from rockwear.scenes.cut import Cut
 from rockwear.scenes.turns import Turns
 
 SCALED = "radius_min", "radius_max", "Rn", "Rt"
 """Parameters that grow with scale_factor: the macroscopic strength stays."""
-WITHOUT = {"width", "height", "grading_factor", "fine_depth", "velocity", "depth_of_cut", "start_up", "cycle_time", "cycles"}
+WITHOUT = {"width", "height", "grading_factor", "fine_depth", "velocity", "depth_of_cut", "start_up", "cycle_time",
+           "cycles"}
 """Parameters of a straight cut through a box."""
 ROCK = (
-    Parameter("full", False, "", flag, "the defaults of scale_factor and backing that give the source's 92,000 discs of rock"),
+    Parameter("full", False, "", flag, "the defaults of scale_factor and backing that give the source's 92,000 discs"),
     Parameter("backing", 0.06, "m", above_zero, "rock behind the path of the pick, fixed at its far side"),
     Parameter("run_out", 0.06, "m", above_zero, "rock ahead of the pick at the end of the cut"),
-    Parameter("scale_factor", 4.0, "", number(1, 10), "factor on the radii of rock and, for the same macroscopic strength, on the "
-              "strengths of its bonds; 1: the source's"))
+    Parameter("scale_factor", 4.0, "", number(1, 10), "factor on the radii of rock and, for the same macroscopic "
+              "strength, on the strengths of its bonds; 1: the source's"))
 MOTION = (
-    Parameter("feed", 0.06, "m", above_zero, "swing between two picks on the same track; the free surface of the rock is the path "
-              "of the pick before, and the chip feed x sin(angle) thick", "ours: [Rojek 2014] has a figure only"),
-    Parameter("cutter_radius", 0.7, "m", above_zero, "distance of the tip from the axis of rotation", "[Rojek 2014, 5.1]"),
+    Parameter("feed", 0.06, "m", above_zero, "swing between two picks on the same track; the free surface of the "
+              "rock is the path of the pick before, and the chip feed x sin(angle) thick", "ours: [Rojek 2014] has a figure only"),
+    Parameter("cutter_radius", 0.7, "m", above_zero, "distance of the tip from the axis of rotation",
+              "[Rojek 2014, 5.1]"),
     Parameter("angular_velocity", 1.6204, "rad/s", above_zero, "of the cutter head", "[Rojek 2014, 5.1]"),
     Parameter("swing", 0.2, "m/s", number(0), "velocity of the cutter head", "[Rojek 2014, 5.1]"),
     Parameter("entry_angle", 25.0, "deg", number(1, 150), "from the lowest point of the path, where the pick enters",
               "ours: [Rojek 2014] has a figure only"),
     Parameter("cut_time", 0.65, "s", duration, "of cutting in a turn", "[Rojek 2014, 5.3]"),
-    Parameter("cycles", 3, "", integer(1), "turns, each a cut into fresh rock and cooling in water", "[Rojek 2014, 5.3]"),
+    Parameter("cycles", 3, "", integer(1), "turns, each a cut into fresh rock and cooling in water",
+              "[Rojek 2014, 5.3]"),
     Parameter("cooling_period", 0.01, "s", above_zero, "between steps while the pick cools"))
 OUTPUT = Group("output", (Parameter("snapshot_period", 0.05, "s", above_zero, "between the pictures of the report"),))
 
@@ -47,10 +51,12 @@ def groups(full=False):
         found.append(Group(group.title, (*own, *kept), group.when))
     size = dict(scale_factor=1.0, backing=0.436) if full else {}
     return parameters.with_defaults(
-        [*found, OUTPUT], kt=4e9, Rn=0.1e6, Rt=0.1e6, mu=0.8, tooth_height=0.15, tooth_width=0.15, rake=10.0, clearance=20.0,
+        [*found, OUTPUT], kt=4e9, Rn=0.1e6, Rt=0.1e6, mu=0.8, tooth_height=0.15, tooth_width=0.15, rake=10.0,
+        clearance=20.0,
         tip_radius=0.008, tool_radius_min=1e-3, tool_radius_max=1e-3, tool_kn=50e9, tool_kt=50e9, tool_mu=0.4,
         contact_damping=0.0, time_step_fraction=0.5, approach=1e-3, time_scale=5.0, hardness_table="MET71",
-        wear_coefficient=0.0025, wear_acceleration=1e4, rock_expansion=1e-5, convection=5000.0, ambient_temperature=283.0,
+        wear_coefficient=0.0025, wear_acceleration=1e4, rock_expansion=1e-5, convection=5000.0,
+        ambient_temperature=283.0,
         rock_temperature=283.0, tool_temperature=283.0,
         # Of the friction in the rock, 44 % of the work of 19 ms in a cut, 2, 4 and 8 steps between samples miss or add
         # 0.7, 2.6 and 7.1 %, at 0.60, 0.49 and 0.36 of the time that samples of every step take.
@@ -60,13 +66,15 @@ def groups(full=False):
 def make(values):
     """The scene of {name: value} of all parameters. Raises ParameterError.
 
-    One pick of a dredge cutter head: cut, cool in water, and again, each time into fresh rock. The head swings along +x and
-    turns counter-clockwise, so that the pick cuts upwards in front of it (undercutting). The rock is the part of the rock
-    mass that feels the pick: from the path of the pick before it on the same track, which is the free surface, to `backing`
-    behind its own path. Each turn is a cut of `cut_time` and cooling for the rest of 2 pi / angular_velocity. While nothing
-    touches the tool the mechanics stand still, and only heat flows.
+    One pick of a dredge cutter head: cut, cool in water, and again, each time into fresh rock. The head swings along
+    +x and turns counter-clockwise, so that the pick cuts upwards in front of it (undercutting). The rock is the part
+    of the rock
+    mass that feels the pick: from the path of the pick before it on the same track, which is the free surface, to
+    `backing` behind its own path. Each turn is a cut of `cut_time` and cooling for the rest of 2 pi /
+    angular_velocity. While nothing touches the tool the mechanics stand still, and only heat flows.
     """
-    v = SimpleNamespace(**{**values, **{name: values["scale_factor"] * values[name] for name in SCALED if name in values}})
+    scaled = {name: values["scale_factor"] * values[name] for name in SCALED if name in values}
+    v = SimpleNamespace(**{**values, **scaled})
     v.depth_of_cut = v.feed
     parts.check_radii(v)
     turn_time = 2 * math.pi / v.angular_velocity
@@ -74,9 +82,10 @@ def make(values):
     vertices = parts.outline(v)
     track = Track(v, vertices)
     rock = track.rock(v)
-    programme = Turns(motion=track.motion(v.time_scale), approach_time=v.approach / (v.cutter_radius * v.angular_velocity),
-                      cut_time=v.cut_time, turn_time=turn_time, cycles=v.cycles, cooling_period=v.cooling_period,
-                      chip_area=track.chip_area, arrays={"free_surface": track.free_surface, "own_path": track.own_path})
+    programme = Turns(motion=track.motion(v.time_scale),
+                      approach_time=v.approach / (v.cutter_radius * v.angular_velocity), cut_time=v.cut_time,
+                      turn_time=turn_time, cycles=v.cycles, cooling_period=v.cooling_period, chip_area=track.chip_area,
+                      arrays={"free_surface": track.free_surface, "own_path": track.own_path})
     return Cut(rock=rock, tool=parts.plane_tool(v, vertices), programme=programme, time_scale=v.time_scale,
                background_damping=v.background_damping, **parts.common(v))
 
@@ -90,7 +99,8 @@ def check_cut(v, turn_time):
     thinnest = v.feed * min(math.sin(math.radians(v.entry_angle)), math.sin(math.radians(last)))
     require(thinnest > 2 * v.radius_max, "feed", v.feed, f"so large that the chip, {thinnest:g} m at its thinnest, "
             f"is thicker than a rock particle, {2 * v.radius_max:g}", "m")
-    require(v.backing > 6 * v.radius_max, "backing", v.backing, f"more than three rock particles, {6 * v.radius_max:g}", "m")
+    require(v.backing > 6 * v.radius_max, "backing", v.backing,
+            f"more than three rock particles, {6 * v.radius_max:g}", "m")
 
 
 class Track:
@@ -129,21 +139,24 @@ class Track:
 
     def _arc(self, angle, radius):
         """Points (n, 2) m at `radius` from the centre, which is at the origin at first."""
-        return np.column_stack([self.swing * (angle - self.begin) / self.spin + radius * np.sin(angle), -radius * np.cos(angle)])
+        x = self.swing * (angle - self.begin) / self.spin + radius * np.sin(angle)
+        return np.column_stack([x, -radius * np.cos(angle)])
 
     def motion(self, time_scale):
         """The motion that brings the tip to the entry of the rock, `time_scale` times as fast as the process."""
-        return SwingAndRotation(centre=self.origin, swing=(self.swing * time_scale, 0.0), angular_velocity=self.spin * time_scale,
-                                pivot=self.pivot, start=self.begin)
+        return SwingAndRotation(centre=self.origin, swing=(self.swing * time_scale, 0.0),
+                                angular_velocity=self.spin * time_scale, pivot=self.pivot, start=self.begin)
 
     def rock(self, v):
         """The rock along the track, fixed at its far side and where no chip can reach its ends."""
         width, height = np.ptp(self.polygon - self.origin, axis=0)
-        rock = CutOut(width=float(width), height=float(height), radius_min=v.radius_min, radius_max=v.radius_max,
-                      porosity=v.porosity, seed=v.seed, bonding_gap=v.bonding_gap, density=v.rock_density, polygon=self.polygon)
+        whole = Specimen(width=float(width), height=float(height), radius_min=v.radius_min, radius_max=v.radius_max,
+                         porosity=v.porosity, seed=v.seed, bonding_gap=v.bonding_gap, density=v.rock_density)
+        rock = CutOut(whole, polygon=self.polygon, bonding_gap=v.bonding_gap)
         depth = [np.linalg.norm(rock.positions - self.origin - (x, 0.0), axis=1) - self.radius for x in self.ends]
         sides = [_distance(rock.positions, self.far + self.origin)] + [
-            np.where(below > 0.5 * v.backing, _distance(rock.positions, np.array([self.own[k], self.far[k]]) + self.origin), np.inf)
+            np.where(below > 0.5 * v.backing, _distance(rock.positions,
+                     np.array([self.own[k], self.far[k]]) + self.origin), np.inf)
             for k, below in zip((0, -1), depth)]
         rock.fixed = np.min(sides, axis=0) < 2 * v.radius_max
         return rock

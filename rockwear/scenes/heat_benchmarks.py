@@ -11,6 +11,7 @@ from yade import O
 
 from rockwear.scenes import yade_scene
 from rockwear.scenes.output import Output
+from rockwear.scenes.parameters import BOND_CONDUCTANCE
 from rockwear.scenes.scene import Scene
 from rockwear.run import vtk
 from rockwear.engines.bonds import Bonds
@@ -19,7 +20,7 @@ from rockwear.engines.recorder import Recorder
 from rockwear.kernels import analytic
 from rockwear.kernels.bond_laws import ElasticBrittle
 from rockwear.kernels.voronoi import among, conducting
-from rockwear.kernels.conduction import PATHS, HeatNetwork, calibrated_conductance, paths
+from rockwear.kernels.conduction import HeatNetwork, calibrated_conductance, paths
 from rockwear.kernels.checks import require
 from rockwear.kernels.parameter import Group, Parameter, above_zero, choice, integer, number
 from rockwear.model.rock import Arranged, Specimen
@@ -43,17 +44,18 @@ NO_LAW = ElasticBrittle(kn=1.0, kt=1.0, Rn=1.0, Rt=1.0, mu=0.0)
 """Of bonds that are never strained."""
 
 GROUPS = [Group("benchmark", (
-    Parameter("benchmark", "all", "", choice("all", *BENCHMARKS), "of M 7.6", "M 7.6"),
+    Parameter("benchmark", "all", "", choice("all", *BENCHMARKS), "of [Rojek 2003, 7.6]", "[Rojek 2003, 7.6]"),
     Parameter("packing", "all", "", choice("all", *PACKINGS), "of the discs"),
     Parameter("across", 80, "", integer(16), "mean diameters across the depth: 80 make about 1800 discs"),
     Parameter("refinements", 3, "", integer(1), "resolutions, each twice as fine as the one before, `across` the last"),
     Parameter("aspect", 0.25, "", number(0.1, 10), "height of the specimen over its depth"),
-    Parameter("radius_ratio", 1.5, "", number(1, 4), "largest over smallest radius of the random packing", "M 5.1"),
-    Parameter("porosity", 0.12, "", number(0), "of the random packing", "P 5.2"),
+    Parameter("radius_ratio", 1.5, "", number(1, 4), "largest over smallest radius of the random packing",
+              "[Rojek 2003, 5.1]"),
+    Parameter("porosity", 0.12, "", number(0), "of the random packing", "[Rojek 2014, 5.2]"),
     Parameter("seed", 1, "", integer(0), "of the random packing"),
-    Parameter("bond_conductance", "voronoi", "", choice(*PATHS), "between particles: by the faces of their Voronoi cells; "
-              "one value fitted to the packing; or a bar between two centres, or half of it", "ours; ours; P 64-65; M 11.1"),
-    Parameter("step_fraction", 0.5, "", above_zero, "heat step over the stable one, at most 1", "calibration/benchmarks/heat.py")))]
+    BOND_CONDUCTANCE,
+    Parameter("step_fraction", 0.5, "", above_zero, "heat step over the stable one, at most 1",
+              "calibration/results/heat.md")))]
 
 Case = namedtuple("Case", "benchmark packing across specimen network step")
 """One benchmark on one specimen of so many diameters across: its HeatNetwork at t = 0 and its longest heat step, s."""
@@ -112,7 +114,7 @@ class HeatBenchmarks(Scene):
     """
 
     def __init__(self, values):
-        self.values = values
+        super().__init__()
         v = self.v = SimpleNamespace(**values)
         require(v.step_fraction <= 1, "step_fraction", v.step_fraction, "at most 1, the stable step")
         coarsest = v.across / 2 ** (v.refinements - 1)
@@ -124,7 +126,7 @@ class HeatBenchmarks(Scene):
                 for name in BENCHMARKS if v.benchmark == "all" else [v.benchmark]:
                     self._add(name, packing, v.across // 2**k)
         self.stages = [(case.benchmark, steps) for case, _, steps, _ in self.plan]
-        self.stage, self.clock, self.chunk = 0, 0.0, 10**6
+        self.chunk = 10**6
         self.errors, self.case_balances = np.full((len(self.plan), 2), np.nan), np.zeros((len(self.cases), 3))
         self.output = BenchmarkOutput(self)
         self._stand()
@@ -191,7 +193,8 @@ class HeatBenchmarks(Scene):
         gap = np.abs(self.heat.network.temperature - self.expected()) / self.expected().max()
         self.errors[self.stage] = gap.max(), np.sqrt(np.mean(gap**2))
         case, balance, stored = self.case, self.heat.network.balance, self.heat.network.heat_content
-        self.case_balances[self.cases.index(case)] = balance["generated"], balance["convected"], stored - sum(balance.values())
+        self.case_balances[self.cases.index(
+            case)] = balance["generated"], balance["convected"], stored - sum(balance.values())
         super().end_stage(folder)
         self._stand()
         if self.finished:
@@ -223,7 +226,8 @@ class BenchmarkOutput(Output):
     def log(self):
         """{name: (value, unit)} of the history."""
         temperature = self.scene.heat.network.temperature
-        return {"time": (self.scene.time, "s"), "stage": (self.scene.stage, "-"), "temperature_max": (temperature.max(), "-"),
+        return {"time": (self.scene.time, "s"), "stage": (self.scene.stage, "-"),
+                "temperature_max": (temperature.max(), "-"),
                 "heat_content": (self.scene.heat.network.heat_content, "-")}
 
     def _of(self, case):
@@ -248,7 +252,8 @@ class BenchmarkOutput(Output):
     def tables(self):
         """errors.csv: every case and instant, benchmarks and packings by their numbers in BENCHMARKS and PACKINGS."""
         rows = [(list(BENCHMARKS).index(case.benchmark), PACKINGS.index(case.packing), case.across, case.specimen.count,
-                 instant, steps, *error) for (case, instant, steps, _), error in zip(self.scene.plan, self.scene.errors)]
+                 instant, steps, *error) for (case, instant, steps, _), error in zip(self.scene.plan,
+                                                                                     self.scene.errors)]
         header = "benchmark packing across discs instant steps largest_error rms_error".split()
         return {"errors.csv": ([f"{name} [{'s' if name == 'instant' else '-'}]" for name in header], rows)}
 

@@ -34,10 +34,6 @@ class Output(ABC):
     def progress(self):
         """A few words on how the run stands."""
 
-    def cracks(self):
-        """Every bond that broke, as engines.bonds.Crack."""
-        return self.scene.bonds.cracks
-
     def warnings(self):
         """Lines on what in this run's results is not to be relied on."""
         return []
@@ -46,6 +42,11 @@ class Output(ABC):
         """Write the tool's shape into the folder where it may have changed and another run can take it."""
 
     def tables(self):
-        """{file: (header, rows)} of further tables: the cracks in order of time."""
-        units = "s m m m - - - - J - -".split()
-        return {"cracks.csv": ([f"{name} [{unit}]" for name, unit in zip(Crack._fields, units)], sorted(self.cracks()))}
+        """{file: (header, rows)} of further tables."""
+        return {}
+
+
+def crack_table(cracks):
+    """{file: (header, rows)} of broken bonds (engines.bonds.Crack), in order of time."""
+    units = "s m m m - - - - J - -".split()
+    return {"cracks.csv": ([f"{name} [{unit}]" for name, unit in zip(Crack._fields, units)], sorted(cracks))}

@@ -3,7 +3,8 @@ from rockwear.kernels.bond_laws import BOND_LAWS
 from rockwear.kernels.conduction import PATHS
 from rockwear.kernels.erosion import REMOVAL
 from rockwear.kernels.parameter import (
-    Group, Parameter, above_zero, choice, density, duration, file, flag, integer, law_parameters, number, speed, stiffness)
+    Group, Parameter, above_zero, choice, density, duration, file, flag, integer, law_parameters, number, speed,
+    stiffness)
 from rockwear.kernels.wear_laws import WEAR_LAWS
 
 HARDNESS_TABLES = "MET71", "MET91"
@@ -31,7 +32,8 @@ BLOCK = Group("rock", (
     Parameter("radius", 9e-3, "m", above_zero, "radius of all rock spheres, before scale_factor", "[Rojek 2003, 13.1]"),
     Parameter("porosity", 0.36, "", number(0), "1 - sum of particle volumes over the block's volume"),
     Parameter("seed", 1, "", integer(0), "of the packings of rock and tool"),
-    Parameter("scale_factor", 1.5, "", number(1, 8), "factor on the radii of rock and tool; stiffnesses grow with it and "
+    Parameter("scale_factor", 1.5, "", number(1, 8),
+              "factor on the radii of rock and tool; stiffnesses grow with it and "
               "strengths with its square, so that the rock keeps modulus and strength"),
     Parameter("full", False, "", flag, "the source's sizes: scale_factor counts as 1"),
     Parameter("rock_density", 2500.0, "kg/m3", density, "bulk density of the rock", "[Rojek 2003, 7.4]"),
@@ -40,7 +42,8 @@ BLOCK = Group("rock", (
 BONDS = Group("bonds", (
     Parameter("bond_law", "brittle", "", choice(*BOND_LAWS), "force law of a bond", "[Rojek 2003, ch. 4]"),
     *law_parameters(BOND_LAWS, "bond_law"),
-    Parameter("bonding_gap", 1e-4, "m", number(0), "largest gap that is bonded", "[Rojek 2014, eq. 6]; the value is ours")))
+    Parameter("bonding_gap", 1e-4, "m", number(0), "largest gap that is bonded",
+              "[Rojek 2014, eq. 6]; the value is ours")))
 
 LOOSE = Group("bonds", tuple(p for p in law_parameters({"brittle": BOND_LAWS["brittle"]}, "bond_law")
                              if p.name in ("kn", "kt", "mu")))
@@ -49,42 +52,53 @@ LOOSE = Group("bonds", tuple(p for p in law_parameters({"brittle": BOND_LAWS["br
 # ---- tool
 
 OUTLINE = (
-    Parameter("tooth_height", 0.07, "m", above_zero, "height of the tooth", "ours: the sources show it in figures only", PARAMETRIC),
+    Parameter("tooth_height", 0.07, "m", above_zero, "height of the tooth", "ours: the sources show it in figures only",
+              PARAMETRIC),
     Parameter("tooth_width", 0.045, "m", above_zero, "width of the tooth at its top", "ours", PARAMETRIC),
     Parameter("rake", 0.0, "deg", number(-80, 80), "rake angle, from the vertical", "ours", PARAMETRIC),
     Parameter("clearance", 3.0, "deg", number(0, 80), "clearance angle, from the horizontal", "ours", PARAMETRIC),
-    Parameter("tip_radius", 4e-3, "m", above_zero, "rounding of the tip; it lies so far behind the tool's origin", "ours"),
+    Parameter("tip_radius", 4e-3, "m", above_zero, "rounding of the tip; it lies so far behind the tool's origin",
+              "ours"),
     Parameter("outline", "", "", file, "CSV file of x, y in m: a tooth of your own in place of the five above"))
 SHAPE = (
     Parameter("work_fraction", 1.0, "", number(0, 1), "part of the friction work that wears a tool of facets",
               "[Rojek 2003, eq. 6.9]; [Rocky, eq. 2-53]: 0.5", OF_FACETS),
-    Parameter("reshape", True, "", flag, "move the vertices of a tool of facets; false: note where it wears and keep the shape",
+    Parameter("reshape", True, "", flag,
+              "move the vertices of a tool of facets; false: note where it wears and keep the shape",
               "ours", OF_FACETS))
 
 PLANE_TOOL = Group("tool", (
-    Parameter("tool", "particles", "", choice("particles", "segments"), "what the tool is made of", "[Rojek 2003, 8.2, 8.1]"),
+    Parameter("tool", "particles", "", choice("particles", "segments"), "what the tool is made of",
+              "[Rojek 2003, 8.2, 8.1]"),
     *OUTLINE,
     Parameter("tool_radius_min", 0.4e-3, "m", above_zero, "smallest radius of tool particles", "[Rojek 2003, 9.2]",
               OF_PARTICLES),
     Parameter("tool_radius_max", 0.52e-3, "m", above_zero, "largest radius of tool particles", "[Rojek 2003, 9.2]",
               OF_PARTICLES),
-    Parameter("thermal_radius", 0.5e-3, "m", above_zero, "mean radius of the particles that fill a tool of facets for its heat",
+    Parameter("thermal_radius", 0.5e-3, "m", above_zero,
+              "mean radius of the particles that fill a tool of facets for its heat",
               "ours", {**OF_FACETS, "heat": (True,)}),
     Parameter("segment", 1e-3, "m", above_zero, "longest segment of the tool's outline", "ours", OF_FACETS),
     *SHAPE,
     Parameter("tool_density", 7830.0, "kg/m3", density, "density of the tool", "[Rojek 2003, 7.4]")))
 
 SPACE_TOOL = Group("tool", (
-    Parameter("tool", "particles", "", choice("particles", "triangles"), "what the tool is made of", "[Rojek 2003, 13.3, 13.2]"),
+    Parameter("tool", "particles", "", choice("particles", "triangles"), "what the tool is made of",
+              "[Rojek 2003, 13.3, 13.2]"),
     *OUTLINE,
     Parameter("breadth", 0.057, "m", above_zero, "breadth of the tooth, across the cut", "ours", {"stl": ("",)}),
-    Parameter("tool_radius", 1.5e-3, "m", above_zero, "radius of the tool's spheres, before scale_factor", "[Rojek 2003, 13.3]",
+    Parameter("tool_radius", 1.5e-3, "m", above_zero, "radius of the tool's spheres, before scale_factor",
+              "[Rojek 2003, 13.3]",
               OF_PARTICLES),
-    Parameter("stl", "", "", file, "STL file in m: a tool of your own in place of outline, breadth and tooth_*. It moves in +x, "
-              "y is up, z across, the lowest point is the tip; top and back are fixed", "ours", {**OF_FACETS, "outline": ("",)}),
-    Parameter("thermal_radius", 2e-3, "m", above_zero, "mean radius of the particles that fill a tool of facets for its heat",
+    Parameter("stl", "", "", file,
+              "STL file in m: a tool of your own in place of outline, breadth and tooth_*. It moves in +x, "
+              "y is up, z across, the lowest point is the tip; top and back are fixed", "ours", {**OF_FACETS,
+                                                                                                 "outline": ("",)}),
+    Parameter("thermal_radius", 2e-3, "m", above_zero,
+              "mean radius of the particles that fill a tool of facets for its heat",
               "ours", {**OF_FACETS, "heat": (True,)}),
-    Parameter("facet", 0.02, "m", above_zero, "size of the tool's triangles, halves of such squares; edges of an STL file longer "
+    Parameter("facet", 0.02, "m", above_zero,
+              "size of the tool's triangles, halves of such squares; edges of an STL file longer "
               "than 1.5 times that are cut in halves", "ours", OF_FACETS),
     *SHAPE,
     Parameter("tool_density", 7830.0, "kg/m3", density, "density of the tool", "[Rojek 2003, 7.4]"))).with_defaults(
@@ -94,13 +108,15 @@ CONTACT = Group("contact of tool and rock", (
     Parameter("tool_kn", 90e9, "N/m", stiffness, "normal stiffness", "[Rojek 2003, 9.2]"),
     Parameter("tool_kt", 90e9, "N/m", stiffness, "tangential stiffness", "as tool_kn: no source gives one"),
     Parameter("tool_mu", 0.3, "", above_zero, "friction", "[Rojek 2003, 9.2]"),
-    Parameter("contact_damping", 0.9, "", number(0, 1), "dashpot, as a fraction of the critical one", "[Rojek 2003, 9.2]")))
+    Parameter("contact_damping", 0.9, "", number(0, 1), "dashpot, as a fraction of the critical one",
+              "[Rojek 2003, 9.2]")))
 
 # ---- motion
 
 CUT_MOTION = (
     Parameter("velocity", 4.0, "m/s", speed, "cutting velocity", "[Rojek 2003, 9.2]"),
-    Parameter("time_scale", 1.0, "", above_zero, "mechanical over physical rate: the mechanics run so many times as fast as the "
+    Parameter("time_scale", 1.0, "", above_zero,
+              "mechanical over physical rate: the mechanics run so many times as fast as the "
               "process; heat flows, and all times count, in the process's own seconds", "[Rojek 2003, 12.1], there 5"),
     Parameter("depth_of_cut", 0.008, "m", above_zero, "depth of cut"),
     Parameter("approach", 0.5e-3, "m", number(0), "free way before the tool meets the rock"))
@@ -126,42 +142,55 @@ LOWERING = Group("motion", (
 WEAR = Group("wear", (
     Parameter("hardness_table", "MET91", "", choice(*HARDNESS_TABLES), "hardness of the tool over temperature",
               "[Rojek 2003, 9.2, table 6.1]", BY_TABLE),
-    Parameter("hardness_temperature", -1.0, "K", number(-1), "constant hardness, the table's at this temperature; -1: at the "
+    Parameter("hardness_temperature", -1.0, "K", number(-1),
+              "constant hardness, the table's at this temperature; -1: at the "
               "tool's own", "[Rojek 2003, 9.2] took 293", BY_TABLE),
-    Parameter("hardness", 0.0, "Pa", number(0), "constant hardness itself; 0: the table's", "[Rojek 2003, ch. 8] took 1"),
-    Parameter("wear_law", "dissipation", "", choice(*WEAR_LAWS), "friction work, pressure, a power of either, or several modes",
+    Parameter("hardness", 0.0, "Pa", number(0), "constant hardness itself; 0: the table's",
+              "[Rojek 2003, ch. 8] took 1"),
+    Parameter("wear_law", "dissipation", "", choice(*WEAR_LAWS),
+              "friction work, pressure, a power of either, or several modes",
               "[Rojek 2003, eqs. 6.1-6.5]"),
     *law_parameters(WEAR_LAWS, "wear_law"),
     Parameter("wear_acceleration", 7000.0, "", number(0), "factor on the wear coefficient", "[Rojek 2003, 9.2]"),
-    Parameter("removal", "volume", "", choice(*REMOVAL), "criterion: Archard's volume conserved, the depth of [Rojek 2003, 6.5], "
+    Parameter("removal", "volume", "", choice(*REMOVAL),
+              "criterion: Archard's volume conserved, the depth of [Rojek 2003, 6.5], "
               "or none: the shape stays", "ours", OF_PARTICLES),
-    Parameter("wear_tolerance", 0.1, "", above_zero, "error of the wear distribution up to which a wear acceleration is trusted",
+    Parameter("wear_tolerance", 0.1, "", above_zero,
+              "error of the wear distribution up to which a wear acceleration is trusted",
               "[Rocky]; the value is ours"),
     Parameter("tool_temperature", 293.15, "K", number(0), "of the tool at first", "[Rojek 2003, 9.2]")))
 
 # ---- heat
 
+BOND_CONDUCTANCE = Parameter(
+    "bond_conductance", PATHS[0], "",
+    choice(*PATHS, renamed={"cells": "voronoi", "packing": "fitted", "P": "bar", "M": "half_bar"}),
+    "between particles: by the faces of their Voronoi cells; one value fitted to the packing; a bar between two "
+    "centres, or half of it", "ours; ours; [Rojek 2014, eqs. 64-65]; [Rojek 2003, eq. 11.1]")
 HEAT = Group("heat", (
     Parameter("heat", True, "", flag, "heat, or a hardness at the tool's first temperature"),
     Parameter("rock_specific_heat", 1970.0, "J/kgK", above_zero, "specific heat of the rock", "[Rojek 2003, 7.4]"),
     Parameter("rock_conductivity", 5.0, "W/mK", above_zero, "conductivity of the rock", "[Rojek 2003, 11.1]"),
-    Parameter("rock_expansion", 0.0, "1/K", number(0), "linear thermal expansion of the rock; 0: none", "[Rojek 2014, 5.2]: 1e-5"),
+    Parameter("rock_expansion", 0.0, "1/K", number(0), "linear thermal expansion of the rock; 0: none",
+              "[Rojek 2014, 5.2]: 1e-5"),
     Parameter("tool_specific_heat", 450.0, "J/kgK", above_zero, "specific heat of the tool", "[Rojek 2003, 7.4]"),
     Parameter("tool_conductivity", 60.0, "W/mK", above_zero, "conductivity of the tool", "[Rojek 2003, 7.4]"),
-    Parameter("heat_fraction", 0.85, "", number(0, 1), "chi, the part of friction work that becomes heat", "[Rojek 2014, 5.2]"),
+    Parameter("heat_fraction", 0.85, "", number(0, 1), "chi, the part of friction work that becomes heat",
+              "[Rojek 2014, 5.2]"),
     Parameter("heat_sharing", "effusivity", "", choice("effusivity", "equal"), "of friction heat between tool and rock",
               "[Rojek 2014, eqs. 39-41]; [Rojek 2003, 4.5] shares equally"),
-    Parameter("conduction", True, "", flag, "false: all heat stays with the particles that it arose at", "[Rojek 2003, 10.1]"),
-    Parameter("bond_conductance", PATHS[0], "", choice(*PATHS, renamed={"cells": "voronoi", "packing": "fitted", "P": "bar",
-                                                                        "M": "half_bar"}),
-              "between particles: by the faces of their Voronoi cells; one value fitted to the packing; a bar between two "
-              "centres, or half of it", "ours; ours; [Rojek 2014, eqs. 64-65]; [Rojek 2003, eq. 11.1]"),
-    Parameter("shank", "insulated", "", choice("insulated", "fixed"), "the tool's particles held by the shank", "[Rojek 2003, 11.3]"),
-    Parameter("shank_temperature", 293.15, "K", number(0), "of a fixed shank", "[Rojek 2003, 11.3]", {"shank": ("fixed",)}),
+    Parameter("conduction", True, "", flag, "false: all heat stays with the particles that it arose at",
+              "[Rojek 2003, 10.1]"),
+    BOND_CONDUCTANCE,
+    Parameter("shank", "insulated", "", choice("insulated", "fixed"), "the tool's particles held by the shank",
+              "[Rojek 2003, 11.3]"),
+    Parameter("shank_temperature", 293.15, "K", number(0), "of a fixed shank", "[Rojek 2003, 11.3]",
+              {"shank": ("fixed",)}),
     Parameter("contact_conductance", 1500.0, "W/m2K", number(0), "between tool and rock", "[Rojek 2014, 5.2]"),
     Parameter("convection", 30.0, "W/m2K", number(0), "at the free surface, natural air", "[Rojek 2003, 7.5]"),
     Parameter("ambient_temperature", 293.15, "K", number(0), "of the air", "[Rojek 2003, 9.2]"),
-    Parameter("rock_temperature", 293.15, "K", number(0), "of the rock at first", "[Rojek 2003, 9.2]")), {"heat": (True,)})
+    Parameter("rock_temperature", 293.15, "K", number(0), "of the rock at first", "[Rojek 2003, 9.2]")),
+             {"heat": (True,)})
 
 # ---- accuracy
 
@@ -187,4 +216,5 @@ def with_defaults(groups, **defaults):
     unknown = set(defaults) - {p.name for group in groups for p in group.parameters}
     if unknown:
         raise KeyError(f"no such parameter: {', '.join(sorted(unknown))}")
-    return [group.with_defaults(**{p.name: defaults[p.name] for p in group.parameters if p.name in defaults}) for group in groups]
+    return [group.with_defaults(**{p.name: defaults[p.name] for p in group.parameters if p.name in defaults})
+            for group in groups]

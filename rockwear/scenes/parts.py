@@ -49,10 +49,12 @@ def hardness(v):
     """Hardness of the tool: constant, the table's at one temperature, or the table."""
     table = HARDNESS[v.hardness_table]
     low, high = table.limits
-    used = ("tool_temperature", "rock_temperature", "ambient_temperature", "shank_temperature") if v.heat else ("tool_temperature",)
+    used = ("tool_temperature", "rock_temperature", "ambient_temperature",
+            "shank_temperature") if v.heat else ("tool_temperature",)
     for name in used:
         value = getattr(v, name)
-        require(low <= value <= high, name, value, f"inside the hardness table of {v.hardness_table}, {low:g} to {high:g}", "K")
+        require(low <= value <= high, name, value,
+                f"inside the hardness table of {v.hardness_table}, {low:g} to {high:g}", "K")
     if v.hardness > 0:
         return Hardness.constant(v.hardness)
     if v.hardness_temperature >= 0:
@@ -87,7 +89,8 @@ def heat(v):
     return HeatModel(
         rock=Material(density=v.rock_density, specific_heat=v.rock_specific_heat, conductivity=v.rock_conductivity),
         tool=Material(density=v.tool_density, specific_heat=v.tool_specific_heat, conductivity=v.tool_conductivity),
-        paths=v.bond_conductance, fraction=v.heat_fraction, sharing=v.heat_sharing, contact_conductance=v.contact_conductance,
+        paths=v.bond_conductance, fraction=v.heat_fraction, sharing=v.heat_sharing,
+        contact_conductance=v.contact_conductance,
         convection=v.convection, rock_temperature=v.rock_temperature, tool_temperature=v.tool_temperature,
         ambient=v.ambient_temperature, shank_temperature=v.shank_temperature if v.shank == "fixed" else None,
         conduction=v.conduction)
@@ -95,7 +98,8 @@ def heat(v):
 
 def expansion(v):
     """scenes.physics.ThermalExpansion of the rock, None without heat or expansion."""
-    return ThermalExpansion(coefficient=v.rock_expansion, reference=v.rock_temperature) if v.heat and v.rock_expansion else None
+    return ThermalExpansion(coefficient=v.rock_expansion,
+                            reference=v.rock_temperature) if v.heat and v.rock_expansion else None
 
 
 def check_radii(v):
@@ -105,7 +109,7 @@ def check_radii(v):
         require(v.tool_radius_max >= v.tool_radius_min, "tool_radius_max", v.tool_radius_max,
                 f"at least tool_radius_min = {v.tool_radius_min:g}", "m")
         require(v.tool_radius_max <= v.radius_min, "tool_radius_max", v.tool_radius_max,
-                f"at most the rock's radius_min = {v.radius_min:g}: a smooth tool needs finer particles [Rojek 2003, 6.5]", "m")
+                f"at most the rock's radius_min = {v.radius_min:g}: a smooth tool needs finer particles", "m")
 
 
 def thermal_fill(v, vertices):
@@ -116,17 +120,20 @@ def thermal_fill(v, vertices):
 
 def plane_tool(v, vertices):
     """The tool assembly of an outline (k, 2) m in the plane, of particles or segments."""
-    common = dict(outline=vertices, contact_law=contact_law(v), wear=tool_wear(v), units=PLANE, sampling_period=v.sampling_period)
+    common = dict(outline=vertices, contact_law=contact_law(v), wear=tool_wear(v), units=PLANE,
+                  sampling_period=v.sampling_period)
     if v.tool == "segments":
         model = FacetTool.of_outline(vertices, segment=v.segment, density=v.tool_density)
         return FacetAssembly(model=model, work_fraction=v.work_fraction, reshape=v.reshape,
                              thermal_body=lambda: FacetBody(model, fill=thermal_fill(v, vertices)), **common)
-    model = Tool(vertices=vertices, radius_min=v.tool_radius_min, radius_max=v.tool_radius_max, seed=v.seed, removal=v.removal,
+    model = Tool(vertices=vertices, radius_min=v.tool_radius_min, radius_max=v.tool_radius_max, seed=v.seed,
+                 removal=v.removal,
                  density=v.tool_density)
     return ParticleAssembly(model=model, **common)
 
 
 def common(v):
     """What a Cut is given whatever its tool and programme."""
-    return dict(bond_law=bond_law(v), accuracy=accuracy(v), depth_of_cut=v.depth_of_cut, heat=heat(v), expansion=expansion(v),
+    return dict(bond_law=bond_law(v), accuracy=accuracy(v), depth_of_cut=v.depth_of_cut, heat=heat(v),
+                expansion=expansion(v),
                 first_temperature=v.tool_temperature)

@@ -1,4 +1,5 @@
-"""Temperatures of a tooth at several speeds: transient, quasi-stationary, and wear started from either [Rojek 2003, ch. 11]."""
+"""Temperatures of a tooth at several speeds: transient, quasi-stationary, and wear started from either [Rojek 2003,
+ch. 11]."""
 from types import SimpleNamespace
 
 import numpy as np
@@ -18,7 +19,8 @@ UNWORN = Hardness.constant(1e30)
 GIVEN = {"cycles": 1, "shank": "insulated", "heat": True, "time_scale": 1.0, "tool": "particles"}
 """Parameters of the cut that are the programme's here."""
 PASSES = (
-    Parameter("velocities", "4,0.4,0.04", "m/s", numbers(above_zero), "of the process, a pass each", "[Rojek 2003, 11.2]"),
+    Parameter("velocities", "4,0.4,0.04", "m/s", numbers(above_zero), "of the process, a pass each",
+              "[Rojek 2003, 11.2]"),
     Parameter("wear_velocity", 0.4, "m/s", above_zero, "of the process in the passes with wear", "[Rojek 2003, 11.4]"),
     Parameter("wear_passes", 1, "", integer(0), "passes with wear from each of the two quasi-stationary fields"),
     Parameter("long_time", 60.0, "s", above_zero, "of heating under the mean load, after each pass"))
@@ -45,8 +47,10 @@ def make(values):
     velocities = listed(v.velocities)
     require(v.wear_passes == 0 or v.wear_velocity in velocities, "wear_velocity", v.wear_velocity,
             f"one of velocities = {v.velocities}", "m/s")
-    programme = Passes(velocities=velocities, wear_velocity=v.wear_velocity, wear_passes=v.wear_passes, start_up=v.start_up,
-                       pass_time=v.cycle_time, long_time=v.long_time, shank_temperature=v.shank_temperature, **cutting.motion(v))
+    programme = Passes(velocities=velocities, wear_velocity=v.wear_velocity, wear_passes=v.wear_passes,
+                       start_up=v.start_up,
+                       pass_time=v.cycle_time, long_time=v.long_time, shank_temperature=v.shank_temperature,
+                       **cutting.motion(v))
     return Cut(rock=cutting.box(v), tool=cutting.tool(v), programme=programme, background_damping=v.background_damping,
                **parts.common(v))
 
@@ -55,19 +59,22 @@ class Passes(Cycles):
     """Passes of one tooth over the rock that its start-up left, the tool each time whole and at its first temperature.
 
     The mechanics run at `velocity`, the process at each of `velocities` (m/s): heat sees that many more seconds
-    ([Rojek 2003, 12.1] does the same, five times). The rock is slow to either, so that the friction work of a metre of cut
-    is the same, and all passes are samples of equal sliding distance. After each, the mean load of the pass heats the tool
-    alone, for `long_time` (s) and for ever [Rojek 2003, 11.3], once with the shank at its temperature, once insulated.
-    Passes with wear then start from the two quasi-stationary fields of `wear_velocity`, each with a whole tool.
+    ([Rojek 2003, 12.1] does the same, five times). The rock is slow to either, so that the friction work of a metre
+    of cut is the same, and all passes are samples of equal sliding distance. After each, the mean load of the pass
+    heats the tool alone, for `long_time` (s) and for ever [Rojek 2003, 11.3], once with the shank at its temperature,
+    once insulated. Passes with wear then start from the two quasi-stationary fields of `wear_velocity`, each with a
+    whole tool.
     """
 
-    def __init__(self, *, velocities, wear_velocity, wear_passes, start_up, pass_time, long_time, shank_temperature, **motion):
+    def __init__(self, *, velocities, wear_velocity, wear_passes, start_up, pass_time, long_time, shank_temperature,
+                 **motion):
         wear = [(f"wear from the {shank} shank's field, pass {n + 1}", wear_velocity, shank, n == 0)
                 for shank in SHANKS for n in range(wear_passes)]
         passes = [(f"{u:g} m/s", u, None, True) for u in velocities]
         # (name, velocity of the process, shank whose field starts it, whether it starts with a whole tool)
         self.schedule = [("start-up", motion["velocity"], None, True), *passes, *wear]
-        super().__init__(times={name: pass_time if k else start_up for k, (name, *_) in enumerate(self.schedule)}, **motion)
+        super().__init__(times={name: pass_time if k else start_up for k, (name, *_) in enumerate(self.schedule)},
+                         **motion)
         self.velocities, self.pass_time, self.long_time = velocities, pass_time, long_time
         self.shank_temperature = shank_temperature
         self.passes, self.worn = {}, {}

@@ -52,28 +52,29 @@ class ToolWear:
         balance = tool.volume_balance()
         lost = -balance["unexplained"] / balance["archard"] if balance["archard"] > 0 else 0.0
         return [] if lost <= LOST else [
-            f"removal = {self.removal} has lost {100 * lost:.2g} % of Archard's volume: removal = volume conserves it, and less "
-            "is lost at a lower wear_acceleration or a shorter wear_period"]
+            f"removal = {self.removal} has lost {100 * lost:.2g} % of Archard's volume: removal = volume conserves it, "
+            "and less is lost at a lower wear_acceleration or a shorter wear_period"]
 
     def _distrust(self, tool):
         error, events, trusted = (value for value, _ in self.trust(tool).values())
         if math.isnan(events) or (math.isfinite(error) and trusted >= self.acceleration):
             return []
-        known = f"is known to {100 * error:.2g} % only" if math.isfinite(error) else "cannot be told from a run as short as this"
+        known = ("cannot be told from a run as short as this" if not math.isfinite(error) else
+                 f"is known to {100 * error:.2g} % only")
         advice = "run longer" if trusted >= self.acceleration else (
             f"use wear_acceleration = {trusted:.2g} at most instead of {self.acceleration:g}, and run that much longer")
-        return [f"where the tool wears {known}, and {tool.piece} goes in {events:.2g} contact events: to trust the distribution "
-                f"of wear to {100 * self.tolerance:g} %, {advice}"]
+        return [f"where the tool wears {known}, and {tool.piece} goes in {events:.2g} contact events: to trust the "
+                f"distribution of wear to {100 * self.tolerance:g} %, {advice}"]
 
 
 @dataclass(frozen=True)
 class HeatModel:
     """Heat in rock and tool [Rojek 2003, ch. 7; Rojek 2014, 3.2-3.5]: friction, conduction, exchange, convection.
 
-    rock, tool: model.materials.Material; paths: how particles conduct, one of kernels.conduction.PATHS; fraction: part of
-    friction work that becomes heat; sharing: "effusivity" or "equal"; contact_conductance, convection: W/m2K;
-    rock_temperature, tool_temperature, ambient: K at first and of the air; shank_temperature: K at which the shank holds
-    the tool, None where it is insulated; conduction: False leaves all heat where it arises.
+    rock, tool: model.materials.Material; paths: how particles conduct, one of kernels.conduction.PATHS; fraction:
+    part of friction work that becomes heat; sharing: "effusivity" or "equal"; contact_conductance, convection: W/m2K;
+    rock_temperature, tool_temperature, ambient: K at first and of the air; shank_temperature: K at which the shank
+    holds the tool, None where it is insulated; conduction: False leaves all heat where it arises.
     """
 
     rock: Material
@@ -89,15 +90,19 @@ class HeatModel:
     shank_temperature: float = None
     conduction: bool = True
 
-    def engine(self, *, rock, body, bonds, rock_friction, tool_contact, wear_acceleration, time_scale, surface_period, period):
+    def engine(self, *, rock, body, bonds, rock_friction, tool_contact, wear_acceleration, time_scale, surface_period,
+               period):
         """engines.heat.Heat of a specimen and a model.thermal_body.ThermalBody."""
         capacity = np.concatenate([self._rock_masses(rock) * self.rock.specific_heat,
                                    body.capacities(self.tool, self.paths)])
         temperature = np.repeat([self.rock_temperature, self.tool_temperature], [rock.count, body.count])
         network = HeatNetwork(capacity=capacity, temperature=temperature, edges=np.empty((0, 2), int), conductance=0.0)
-        return Heat(network=network, bonds=bonds, rock_friction=rock_friction, tool_contact=tool_contact, rock=rock, body=body,
-                    heat_fraction=self.fraction, tool_share=self._tool_share(), contact_conductance=self.contact_conductance,
-                    convection=self.convection, ambient=self.ambient, rock_paths=rock.paths(self.paths, self.rock.conductivity),
+        return Heat(network=network, bonds=bonds, rock_friction=rock_friction, tool_contact=tool_contact, rock=rock,
+                    body=body,
+                    heat_fraction=self.fraction, tool_share=self._tool_share(),
+                    contact_conductance=self.contact_conductance,
+                    convection=self.convection, ambient=self.ambient, rock_paths=rock.paths(self.paths,
+                                                                                            self.rock.conductivity),
                     tool_paths=body.paths(self.paths, self.tool.conductivity), conduction=self.conduction,
                     shank_temperature=self.shank_temperature, surface_period=surface_period,
                     wear_acceleration=wear_acceleration, time_scale=time_scale, period=period)
@@ -116,7 +121,8 @@ class HeatModel:
         """Raise ParameterError (heat_period) where a period (s) would take too many stable heat steps."""
         longest = MOST_HEAT_STEPS * heat.network.stable_step()
         require(period <= longest, "heat_period", period,
-                f"at most {MOST_HEAT_STEPS} stable heat steps, {longest:.3g} s with these conductivities and capacities", "s")
+                f"at most {MOST_HEAT_STEPS} stable heat steps, {longest:.3g} s with these conductivities and "
+                "capacities", "s")
 
 
 @dataclass(frozen=True)

@@ -20,6 +20,9 @@ class Programme(ABC):
     damping_rates = None
     """(stages,) 1/s of background damping by stage; None where it stays the same."""
 
+    def __init__(self, motion=None):
+        self.motion = motion
+
     def attach(self, scene):
         """The scene whose programme this is."""
         self.scene = scene
@@ -75,7 +78,7 @@ class Programme(ABC):
 
     def reaches_rock(self):
         """Whether anything of the tool still meets the rock."""
-        return math.isfinite(self.scene.foremost())
+        return True
 
     # ---- what a checkpoint holds
 
@@ -173,21 +176,24 @@ class StartState:
 
 
 class Cycles(Programme):
-    """A start-up cut, then cycles, each in the rock that the start-up left, with the tool as it is worn [Rojek 2003, 9.1].
+    """A start-up cut, then cycles, each in the rock that the start-up left, with the tool as it is worn [Rojek 2003,
+    9.1].
 
     times: {stage: s}, the start-up first; velocity: m/s of the process; depth_of_cut: m; surface: height of the rock's
-    surface, m; approach: free way before the tool meets the rock, m; ahead: m below the surface where its foremost point
-    counts for that.
+    surface, m; approach: free way before the tool meets the rock, m; ahead: m below the surface where its foremost
+    point counts for that.
     """
 
     def __init__(self, *, times, velocity, depth_of_cut, surface, approach, ahead, time_scale=1.0):
+        super().__init__()
         self.times, self.velocity, self.depth_of_cut = times, velocity, depth_of_cut
         self.surface, self.approach, self.ahead, self.time_scale = surface, approach, ahead, time_scale
 
     def attach(self, scene):
         super().attach(scene)
         x = -self.approach - scene.tool.foremost(below=self.ahead)
-        self.motion = Straight(start=(x, self.surface - self.depth_of_cut), velocity=(self.velocity * self.time_scale, 0.0))
+        self.motion = Straight(start=(x, self.surface - self.depth_of_cut),
+                               velocity=(self.velocity * self.time_scale, 0.0))
         self.foremost_when_new = scene.foremost()
         self.start = StartState(scene)
 
@@ -222,12 +228,16 @@ class Cycles(Programme):
         return self.scene.tool.mark_of_shape()
 
     def _add_approach(self):
-        """Lengthen the stage by the way that a worn tool is behind a new one, so that each goes through the same rock."""
+        """Lengthen the stage by the way that a worn tool is behind a new one, so that each goes through the same
+        rock."""
         scene, behind = self.scene, self.foremost_when_new - self.scene.foremost()
         if 0.0 < behind < math.inf:
             name, steps = scene.stages[scene.stage]
             self.approach_steps[scene.stage] = scene.steps_in(behind / self.velocity)
             scene.stages[scene.stage] = name, steps + int(self.approach_steps[scene.stage])
+
+    def reaches_rock(self):
+        return math.isfinite(self.scene.foremost())
 
     def state(self):
         steps = np.array([steps for _, steps in self.scene.stages])
@@ -269,19 +279,22 @@ class Cycles(Programme):
 class LowerAndCut(Programme):
     """The tool is lowered into the rock and then drawn through it [Rojek 2003, ch. 13].
 
-    ways: [(stage, s, (2,) m/s of the tool)]; start: (2,) m, place of the tool's origin at first; damping_rates: (stages,)
-    1/s, or None.
+    ways: [(stage, s, (2,) m/s of the tool)]; start: (2,) m, place of the tool's origin at first; damping_rates:
+    (stages,) 1/s, or None.
     """
 
     def __init__(self, *, ways, start, damping_rates=None):
+        super().__init__(Straight(start=start, velocity=ways[0][2]))
         self.ways, self.damping_rates = ways, damping_rates
-        self.motion = Straight(start=start, velocity=ways[0][2])
 
     def stages(self):
         return {name: seconds for name, seconds, _ in self.ways}
 
     def fastest(self):
         return max(float(np.linalg.norm(velocity)) for _, _, velocity in self.ways)
+
+    def reaches_rock(self):
+        return math.isfinite(self.scene.foremost())
 
     def begin_stage(self, folder):
         if not self.scene.finished:

@@ -18,8 +18,12 @@ class Scene(ABC):
     """
 
     time_scale = 1.0
-    """Seconds of the process in a second of the mechanics [Rojek 2003, 12.1]. All times of a scene but its time step are
+    """Seconds of the process in a second of the mechanics [Rojek 2003, 12.1]. All times of a scene but its time step
+    are
     those of the process."""
+
+    def __init__(self):
+        self.stage, self.clock, self.engines = 0, 0.0, []
 
     @abstractmethod
     def build(self):
@@ -34,7 +38,6 @@ class Scene(ABC):
         # Chunks between canonical points depend on the scene alone, so that every run of it passes the same points.
         self.chunk = int(min(2000, max(100, 12_000_000 // max(1, len(self.rock.pairs)))))
         self.stages = [(name, max(1, self.steps_in(seconds))) for name, seconds in stages.items()]
-        self.stage, self.clock = 0, 0.0
 
     def steps_in(self, seconds):
         """Steps in so many seconds of the process."""
@@ -130,7 +133,8 @@ class Scene(ABC):
         """Go back to a checkpoint: `state`, and YADE's scene in `directory`."""
         O.load(str(directory / "scene.yade.gz"))
         self._make_engines()
-        self.stage, self.first_iteration, self.clock = int(state["stage"]), int(state["first_iteration"]), float(state["clock"])
+        self.stage, self.clock = int(state["stage"]), float(state["clock"])
+        self.first_iteration = int(state["first_iteration"])
         self._restore_engines(state)
         self._connect()
         for engine in self.engines:

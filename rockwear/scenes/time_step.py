@@ -15,14 +15,16 @@ def plane_steps(rock, bond_law, contact):
     """(critical step of the bonded rock, of rock under the tool), s. bond_law: its stiffest springs count; contact:
     model.contact.ContactLaw."""
     kn, kt = bond_law.stiffest()
-    common = dict(positions=rock.positions, radii=rock.radii, masses=rock.masses, inertias=rock.inertias, bonds=rock.pairs,
+    common = dict(positions=rock.positions, radii=rock.radii, masses=rock.masses, inertias=rock.inertias,
+                  bonds=rock.pairs,
                   kn=kn, kt=kt, fixed=np.flatnonzero(rock.fixed))
     bonded = critical_time_step(**common)
     # Any free disc may be the one that the tool presses, from any side, with two of its particles at once.
     free = np.flatnonzero(~rock.fixed)
     dashpots = 4 * contact.damping * np.sqrt(contact.kn * rock.masses[free])
     sides = [np.tile([math.cos(angle), math.sin(angle)], (len(free), 1)) for angle in (0, math.pi / 4, math.pi / 2)]
-    exact = min(critical_time_step(**common, ground=(free, side, 2 * contact.kn, 2 * contact.kt, dashpots)) for side in sides)
+    exact = min(critical_time_step(**common, ground=(free, side, 2 * contact.kn, 2 * contact.kt, dashpots))
+                for side in sides)
     # The estimate of [Rojek 2003, eq. 3.37] for the lightest disc is shorter where contacts are damped, and the energy
     # balance asks for it.
     highest = math.hypot(2 / bonded, math.sqrt(2 * contact.kn / float(rock.masses[free].min())))

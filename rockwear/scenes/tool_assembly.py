@@ -54,7 +54,8 @@ class ToolAssembly(ABC):
         return self.model.foremost(below=below)
 
     def make_engines(self, *, motion, increment, wear_period, temperature, on_removal):
-        """Make the tool's bodies and engines. motion: of kernels.rigid_motion; increment: VelocityIncrement of the rock;
+        """Make the tool's bodies and engines. motion: of kernels.rigid_motion; increment: VelocityIncrement of the
+        rock;
         temperature: a function giving (pieces,) K; on_removal(worn, loose): told of particles that have gone."""
         self.bodies = self._make_bodies(motion)
         self.contact = self._make_contact(increment)
@@ -107,7 +108,8 @@ class ToolAssembly(ABC):
     def mass_balance(self):
         """{entry: kg}: the volume balance times the tool's density."""
         density = self.model.density
-        return {"initial": self.model.area * density, **{name: value * density for name, value in self.volume_balance().items()}}
+        return {"initial": self.model.area * density, **{name: value * density for name,
+                                                         value in self.volume_balance().items()}}
 
     def friction_balance(self):
         """{entry: J}: friction at the tool, and what of it has worn it."""
@@ -150,13 +152,15 @@ class ToolAssembly(ABC):
 
 
 class ParticleAssembly(ToolAssembly):
-    """A tool of particles: a model.particle_tool.Tool, or LayeredTool in space. Only its surface particles are in YADE."""
+    """A tool of particles: a model.particle_tool.Tool, or LayeredTool in space. Only its surface particles are in
+    YADE."""
 
     def _make_bodies(self, motion):
         return (ToolBodies if self.units is PLANE else SphereBodies)(self.model, motion)
 
     def _make_contact(self, increment):
-        return ToolContact(tool=self.bodies, motion=increment, needs=self.wear.law.needs, sampling_period=self.sampling_period)
+        return ToolContact(tool=self.bodies, motion=increment, needs=self.wear.law.needs,
+                           sampling_period=self.sampling_period)
 
     def _make_wear(self, period, temperature, on_removal):
         return Wear(contact=self.contact, erosion=self.model.erosion, tool=self.bodies, law=self.wear.law,
@@ -199,7 +203,8 @@ class ParticleAssembly(ToolAssembly):
     def results(self):
         erosion, unit = self.model.erosion, self.units.volume
         found = {"mass_lost": (erosion.mass_fraction_lost, "-"), "worn_volume": (erosion.archard_volume, unit),
-                 "particles_removed": (int(np.sum(~erosion.alive)), "-"), "dropped_volume": (erosion.lost_with_pieces, unit),
+                 "particles_removed": (int(np.sum(~erosion.alive)), "-"), "dropped_volume": (erosion.lost_with_pieces,
+                                                                                             unit),
                  "tool_particles": (self.model.count, "-")}
         if self.units is not PLANE:
             found["maximum_wear_depth"] = float((erosion.worn / erosion.areas).max()), "m"
@@ -210,11 +215,12 @@ class ParticleAssembly(ToolAssembly):
 
 
 class FacetAssembly(ToolAssembly):
-    """A tool of facets, a model.facet_tool.FacetTool: segments in the plane, triangles in space; its vertices move with the
+    """A tool of facets, a model.facet_tool.FacetTool: segments in the plane, triangles in space; its vertices move
+    with the
     wear unless reshape is False.
 
-    work_fraction: part of the friction work that wears the tool; thermal_body: a function that makes the body behind the
-    facets, for heat.
+    work_fraction: part of the friction work that wears the tool; thermal_body: a function that makes the body behind
+    the facets, for heat.
     """
 
     piece = "a layer as deep as its facet"
@@ -275,7 +281,8 @@ class FacetAssembly(ToolAssembly):
 
     def snapshot(self):
         boundary = self.model.boundary
-        return {"tool_vertices": boundary.vertices, "tool_facets": boundary.facets, "worn_volume": self.wear_engine.worn}
+        return {"tool_vertices": boundary.vertices, "tool_facets": boundary.facets,
+                "worn_volume": self.wear_engine.worn}
 
     def points(self):
         return self.model.boundary.vertices, {"worn_depth": self.model.depth_below}
@@ -294,11 +301,11 @@ class FacetAssembly(ToolAssembly):
         recession, found = self.wear_engine.recession, super().warnings()
         if not self.reshape or not recession > RECESSION:
             return found
+        factor = self.wear.acceleration
         return [*found,
-                f"the face recedes by {recession:.2g} of the way that rock slides on it, away from what presses there: less "
-                f"wears than the same work at a lower wear acceleration would. Use wear_acceleration = "
-                f"{self.wear.acceleration * RECESSION / recession:.2g} at most instead of {self.wear.acceleration:g}, and run "
-                "that much longer"]
+                f"the face recedes by {recession:.2g} of the way that rock slides on it, away from what presses there: "
+                "less wears than the same work at a lower wear acceleration would. Use wear_acceleration = "
+                f"{factor * RECESSION / recession:.2g} at most instead of {factor:g}, and run that much longer"]
 
     def write_shape(self, folder):
         if self.units is not PLANE and self._shape_changes():

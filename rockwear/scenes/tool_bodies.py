@@ -16,8 +16,8 @@ class ToolBodies:
 
     They have no mass: the motion is prescribed, and no kinetic energy of the tool enters the balance.
 
-    tool: a model.particle_tool.Tool; motion: of kernels.rigid_motion. `pose` is where the tool is, `velocities` {particle: (vx, vy)}
-    and `angular_velocity` (rad/s) are how YADE moves it in this step.
+    tool: a model.particle_tool.Tool; motion: of kernels.rigid_motion. `pose` is where the tool is, `velocities`
+    {particle: (vx, vy)} and `angular_velocity` (rad/s) are how YADE moves it in this step.
     """
 
     def __init__(self, tool, motion):
@@ -67,11 +67,13 @@ class ToolBodies:
         self.ids = list(self.body_of.values())
 
     def _body(self, index, x, y):
-        return finite_disc((x, y), float(self.tool.radii[index]), material="steel", mask=TOOL_MASK, mass=0.0, inertia=0.0)
+        return finite_disc((x, y), float(self.tool.radii[index]), material="steel", mask=TOOL_MASK, mass=0.0,
+                           inertia=0.0)
 
     def _set_off(self, index, state, x, y, origin, velocity):
         """Move it as a point at (x, y) of a body does whose `origin` has this velocity."""
-        self.velocities[index] = (velocity[0] - self.angular_velocity * (y - origin[1]), velocity[1] + self.angular_velocity * (x - origin[0]))
+        self.velocities[index] = (velocity[0] - self.angular_velocity * (y - origin[1]),
+                                  velocity[1] + self.angular_velocity * (x - origin[0]))
         state.vel = (*self.velocities[index], 0.0)
 
     def go_on(self, velocity):
@@ -86,8 +88,9 @@ class ToolBodies:
         if self.angular_velocity:
             # The contact point turns with the tool about its particle's centre.
             geom = interaction.geom
-            cutter_radius = self.angular_velocity * (self.tool.radii[index] - 0.5 * geom.penetrationDepth) * (1 if tool_first else -1)
-            vx, vy = vx - cutter_radius * geom.normal[1], vy + cutter_radius * geom.normal[0]
+            side = 1 if tool_first else -1
+            turning = self.angular_velocity * (self.tool.radii[index] - 0.5 * geom.penetrationDepth) * side
+            vx, vy = vx - turning * geom.normal[1], vy + turning * geom.normal[0]
         return vx, vy, 0.0
 
     def _moving_point(self):
@@ -139,8 +142,9 @@ class SphereBodies(ToolBodies):
 class FacetBodies(ToolBodies):
     """A tool's facets in YADE, moved like particles; each is the triangle that facet_tool.corners gives.
 
-    tool: a model.facet_tool.FacetTool. `positions` (m, 2) and `heights` (m,) m are the bodies' centres in the tool's frame as
-    they are in YADE, `local` (m, 3, 3) m their corners about them; `reshape` brings all to the tool's present shape.
+    tool: a model.facet_tool.FacetTool. `positions` (m, 2) and `heights` (m,) m are the bodies' centres in the tool's
+    frame as they are in YADE, `local` (m, 3, 3) m their corners about them; `reshape` brings all to the tool's
+    present shape.
     """
 
     def __init__(self, tool, motion):

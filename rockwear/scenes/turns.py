@@ -19,13 +19,14 @@ HOTTEST = 0.01
 class Turns(Programme):
     """Approach, then cut and cooling in turn, each cut into the rock that the approach left.
 
-    motion: of kernels.rigid_motion; approach_time, cut_time, turn_time: s of the process; cycles: turns; cooling_period: s
-    between steps while the pick cools and the mechanics stand still; chip_area: m2 of rock that a cut goes through; arrays:
-    {name: array} for the report.
+    motion: of kernels.rigid_motion; approach_time, cut_time, turn_time: s of the process; cycles: turns;
+    cooling_period: s between steps while the pick cools and the mechanics stand still; chip_area: m2 of rock that a
+    cut goes through; arrays: {name: array} for the report.
     """
 
     def __init__(self, *, motion, approach_time, cut_time, turn_time, cycles, cooling_period, chip_area, arrays):
-        self.motion, self.approach_time, self.cut_time, self.turn_time = motion, approach_time, cut_time, turn_time
+        super().__init__(motion)
+        self.approach_time, self.cut_time, self.turn_time = approach_time, cut_time, turn_time
         self.cycles, self.cooling_period, self.chip_area, self.arrays = cycles, cooling_period, chip_area, arrays
         self.cooled, self.worn_heat = 0, 0.0
 
@@ -93,10 +94,6 @@ class Turns(Programme):
         if scene.tool.profile and not scene.finished:
             scene.tool.profile.begin_cycle(scene.tool.mark_of_shape())
 
-    def reaches_rock(self):
-        # Every turn takes the pick through the whole rock, however worn it is.
-        return True
-
     @contextmanager
     def removal(self):
         network = self.scene.heat.network
@@ -108,7 +105,8 @@ class Turns(Programme):
     # ---- what a checkpoint holds
 
     def state(self):
-        return {"cooled": self.cooled, "worn_heat": self.worn_heat, "path_start": self.path_start, "start": self.start.state()}
+        return {"cooled": self.cooled, "worn_heat": self.worn_heat,
+                "path_start": self.path_start, "start": self.start.state()}
 
     def restore(self, state):
         self.cooled, self.path_start = int(state["cooled"]), int(state["path_start"])
@@ -131,20 +129,11 @@ class Turns(Programme):
 
     def heat_log(self):
         heat = self.scene.heat
-        hot, mean = self._hot_and_mean(heat.network)
+        hot, mean = hot_and_mean(heat.network, self.scene.rock.count)
         return {"tool_temperature_hot": (hot, "K"), "tool_temperature_mean": (mean, "K"),
                 "water_heat": (-heat.network.balance["convected"], "J/m"),
                 "pick_friction_heat": (float(heat.load.friction_heat.sum()), "J/m"),
                 "pick_heat_worn_away": (self.worn_heat, "J/m")}
-
-    def _hot_and_mean(self, network):
-        """Mean temperatures (K) of the hottest part of the tool's mass, and of all of it."""
-        rock = self.scene.rock.count
-        capacity, temperature = network.capacity[rock:], network.temperature[rock:]
-        order = np.argsort(-temperature)
-        order = order[capacity[order] > 0]
-        hottest = order[:max(1, round(HOTTEST * len(order)))]
-        return (float(np.average(temperature[part], weights=capacity[part])) for part in (hottest, order))
 
     def model_arrays(self):
         return self.arrays
@@ -184,24 +173,26 @@ class Turns(Programme):
     def repeated_turns(self, count):
         """Rows of turns.csv: the heating of all cuts so far, in the mean, again and again from the cold.
 
-        Each tool node takes the mean power of its friction, and exchanges heat with the water and, by the mean conductance,
-        with the rock that it touched; then it cools. peak, cooled: K of the hottest part at the end of cutting and of
-        cooling; mean: K of the whole then; absorbed, released: J/m of friction and to water and rock, which become equal in
-        the stationary state [Rojek 2014, 5.3]. No heat goes with worn particles here.
+        Each tool node takes the mean power of its friction, and exchanges heat with the water and, by the mean
+        conductance, with the rock that it touched; then it cools. peak, cooled: K of the hottest part at the end of
+        cutting and of cooling; mean: K of the whole then; absorbed, released: J/m of friction and to water and rock,
+        which become equal in the stationary state [Rojek 2014, 5.3]. No heat goes with worn particles here.
         """
         scene, model = self.scene, self.scene.heat_model
         state = scene.heat.network.state()
         rock, nodes = scene.rock.count, len(state["capacity"]) - scene.rock.count
         # Rock that has cooled down keeps out of the balance.
         state["temperature"] = np.repeat([model.ambient, model.tool_temperature], [rock, nodes])
-        network = HeatNetwork(capacity=np.ones(rock + nodes), edges=np.empty((0, 2), int), conductance=0.0, temperature=0.0)
+        network = HeatNetwork(capacity=np.ones(rock + nodes), edges=np.empty((0, 2), int), conductance=0.0,
+                              temperature=0.0)
         network.restore(state)
         there = np.flatnonzero(network.capacity[rock:] > 0)
         # What particles took up that are gone since comes to the nearest that are left.
         places = scene.heat.body.positions
         heir = cKDTree(places[there]).query(places)[1]
         power, touch, rock_temperature = scene.heat.averages()
-        power, touch, warmth = (np.bincount(heir, values, len(there)) for values in (power, touch, touch * rock_temperature))
+        power, touch, warmth = (np.bincount(heir, values, len(there))
+                                for values in (power, touch, touch * rock_temperature))
         tool = rock + there
         water = state["convection"][tool]
         wetted = np.divide(water * model.ambient + warmth, water + touch, out=np.full(len(tool), model.ambient),
@@ -212,10 +203,19 @@ class Turns(Programme):
             network.source(tool, power)
             network.convect(tool, water + touch, wetted)
             network.advance(self.cut_time)
-            peak, _ = self._hot_and_mean(network)
+            peak, _ = hot_and_mean(network, rock)
             network.source(tool, 0.0)
             network.convect(tool, water, model.ambient)
             network.advance(self.turn_time - self.cut_time)
             absorbed, released = (abs(network.balance[name] - balance[name]) for name in ("generated", "convected"))
-            rows.append((turn, peak, *self._hot_and_mean(network), absorbed, released))
+            rows.append((turn, peak, *hot_and_mean(network, rock), absorbed, released))
         return rows
+
+
+def hot_and_mean(network, first):
+    """Mean temperatures (K) of the hottest part of the mass of the nodes from `first` on, and of all of it."""
+    capacity, temperature = network.capacity[first:], network.temperature[first:]
+    order = np.argsort(-temperature)
+    order = order[capacity[order] > 0]
+    hottest = order[:max(1, round(HOTTEST * len(order)))]
+    return tuple(float(np.average(temperature[part], weights=capacity[part])) for part in (hottest, order))

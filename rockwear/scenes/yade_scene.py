@@ -40,8 +40,8 @@ def put_tool_material(*, mu, contact_damping):
 
 def put_rock(rock):
     """The specimen's particles as bodies 0..n-1, its fixed ones without degrees of freedom."""
-    for position, radius, mass, inertia, fixed in zip(rock.positions.tolist(), rock.radii.tolist(), rock.masses.tolist(),
-                                                     rock.inertias.tolist(), rock.fixed):
+    columns = rock.positions.tolist(), rock.radii.tolist(), rock.masses.tolist(), rock.inertias.tolist(), rock.fixed
+    for position, radius, mass, inertia, fixed in zip(*columns):
         particle = finite_disc if len(position) == 2 else sphere
         body = particle(position, radius, material="bonding rock", mask=ROCK_MASK, mass=mass, inertia=inertia)
         if fixed:
@@ -52,12 +52,13 @@ def put_rock(rock):
 def put_loop(*, rock, tool=None, damping=0.0, ratcheting_free=True):
     """YADE's own loop: bonds, rock on rock, tool on rock [Rojek 2003, 4.5], explicit integration.
 
-    rock: kn, kt (N/m) and mu of contacts within the rock, a bond law or the like; tool: those of its contacts, None without
-    a tool; damping: non-viscous (Cundall's), a fraction of each force; ratcheting_free: shear between spheres by their full
-    radii, YADE's way, which does not see where they really touch (kernels.stability); False: as the points of contact move,
-    so that the springs give back what they took.
+    rock: kn, kt (N/m) and mu of contacts within the rock, a bond law or the like; tool: those of its contacts, None
+    without a tool; damping: non-viscous (Cundall's), a fraction of each force; ratcheting_free: shear between spheres
+    by their full radii, YADE's way, which does not see where they really touch (kernels.stability); False: as the
+    points of contact move, so that the springs give back what they took.
     """
-    parameters = [Ip2_FrictMat_FrictMat_FrictPhys(kn=exactly(rock.kn), ks=exactly(rock.kt), frictAngle=exactly(math.atan(rock.mu)))]
+    parameters = [Ip2_FrictMat_FrictMat_FrictPhys(kn=exactly(rock.kn), ks=exactly(rock.kt),
+                                                  frictAngle=exactly(math.atan(rock.mu)))]
     laws = [Law2_ScGeom_FrictPhys_CundallStrack()]
     if tool:
         parameters.append(Ip2_FrictMat_FrictViscoMat_FrictViscoPhys(
@@ -70,9 +71,9 @@ def put_loop(*, rock, tool=None, damping=0.0, ratcheting_free=True):
 def put_loop_with_facets(*, rock, tool, damping=0.0, ratcheting_free=True):
     """The same beside a tool of facets.
 
-    YADE puts a facet first into its contacts, and has no functor for (tool, rock) in this order. Tool and loose rock are of
-    one kind here, FrictViscoMat, and the constants go by the pair of materials; rock has no dashpot. One law then keeps one
-    sum of plastic dissipation, which engines.facet_contact divides.
+    YADE puts a facet first into its contacts, and has no functor for (tool, rock) in this order. Tool and loose rock
+    are of one kind here, FrictViscoMat, and the constants go by the pair of materials; rock has no dashpot. One law
+    then keeps one sum of plastic dissipation, which engines.facet_contact divides.
     """
     loose, steel = O.materials["loose rock"].id, O.materials["steel"].id
 

@@ -37,8 +37,8 @@ def energy_stiffness(positions, radii, bonds, kn, kt):
         point = x[i] + (radii[i] - half) * normal
         motion = []  # velocity of j's material at the contact against that of i's
         for body, sign in ((i, -1.0), (j, 1.0)):
-            cutter_radius = point - x[body]
-            turn = np.array([[-cutter_radius[1]], [cutter_radius[0]]]) if d == 2 else np.cross(np.eye(3), cutter_radius).T
+            arm = point - x[body]
+            turn = np.array([[-arm[1]], [arm[0]]]) if d == 2 else np.cross(np.eye(3), arm).T
             motion.append(sign * np.hstack([np.eye(d), turn]))
         motion = np.hstack(motion)
         projector = np.outer(normal, normal)
@@ -60,7 +60,7 @@ def test_two_discs_one_bond():
 
 @pytest.mark.parametrize("distance", [0.9, 1.0, 1.2])
 def test_arms_reach_to_the_middle_of_overlap_or_gap(distance):
-    """Discs alike: cutter_radius a = ½ distance, whatever the radius."""
+    """Discs alike: arm a = ½ distance, whatever the radius."""
     expected = 2 / math.sqrt(2 * 2e10 / 3 + 2 * 2e10 * (distance / 2) ** 2 / 0.375)
     assert equal_discs([[0, 0], [distance, 0]], [[0, 1]], kt=2e10) == pytest.approx(expected, rel=1e-5)
 
