@@ -12,9 +12,9 @@ class Expansion(Engine):
     """Radii r = r0 (1 + alpha (theta - theta0)) [Rojek 2014, eq. 11], for bodies 0..n-1.
 
     Expansion acts on a bond like a displacement. Its length at rest, |x_j - x_i| at bonding, grows in proportion to
-    r_i + r_j. (In [Rojek 2014, eq. 10] it grows by the growth of r_i + r_j and keeps the packing's gap g0, so that bonds
-    with overlaps and bonds with gaps grow differently, and a packing under uniform heating has residual stresses. Here
-    it has none; where discs touch the two are the same.) A broken bond keeps its length at rest, that is, the distance
+    r_i + r_j. (In [Rojek 2014, eq. 10] it grows by the growth of r_i + r_j and keeps the packing's gap g0: bonds with
+    overlaps and bonds with gaps grow differently, and a packing under uniform heating has residual stresses. Here it
+    has none; where discs touch the two are the same.) A broken bond keeps its length at rest, that is, the distance
     at which it presses again. Other contacts take the new radii. Masses are kept: the density falls. Bounding boxes
     follow at the next run of the collider; their margin, a twentieth of a radius, is a thousand times what the radii
     grow in the meantime.
