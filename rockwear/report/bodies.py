@@ -123,17 +123,20 @@ def rock_temperature(run, shot):
 def tool_heat(run, shot):
     """(positions (n, d) m in the tool's own frame, radii (n,) m, temperatures (n,) K) of what is left of the tool.
 
-    Thermal nodes are the tool's particles, or stand inside a tool of facets by themselves.
+    Thermal nodes are the tool's particles, or stand inside a tool of facets by themselves; none where a run does not say
+    where they are.
     """
     values, model = shot["temperature"][len(run.model["rock_radii"]):], run.model
-    if "thermal_positions" in model:
-        positions = model["thermal_positions"]
-        alive = shot.get("thermal_alive", np.ones(len(positions), bool))
-        # Nodes have no size of their own: discs that touch the nearest ones, a little larger to leave fewer gaps.
-        near = cKDTree(positions).query(positions, min(2, len(positions)))[0].reshape(len(positions), -1)[:, -1]
-        return positions[alive], 0.55 * near[alive], values[alive]
-    alive = shot["alive"]
-    return model["tool_positions"][alive], model["tool_radii"][alive], values[alive]
+    if has_particles(run):
+        alive = shot["alive"]
+        return model["tool_positions"][alive], model["tool_radii"][alive], values[alive]
+    positions = model.get("thermal_positions", np.empty((0, shot["rock_positions"].shape[1])))
+    if not len(positions):
+        return positions, np.empty(0), np.empty(0)
+    alive = shot.get("thermal_alive", np.ones(len(positions), bool))
+    # Nodes have no size of their own: discs that touch the nearest ones, a little larger to leave fewer gaps.
+    near = cKDTree(positions).query(positions, min(2, len(positions)))[0].reshape(len(positions), -1)[:, -1]
+    return positions[alive], 0.55 * near[alive], values[alive]
 
 
 # ---- how it looks

@@ -65,18 +65,21 @@ class CutOutput(Output):
         rock = scene.rock
         size = {"box": np.array([rock.width, rock.height])} if scene.in_plane else {
             "block": np.array([rock.width, rock.height, rock.depth])}
+        heat = {"thermal_positions": scene.tool.thermal_body.positions} if scene.heat else {}
         return {"rock_radii": rock.radii, "rock_fixed": rock.fixed, "bonds": rock.pairs, "outline": scene.tool.outline,
-                **size, **scene.tool.model_arrays(), **scene.programme.model_arrays()}
+                **size, **heat, **scene.tool.model_arrays(), **scene.programme.model_arrays()}
 
     def snapshot(self):
         scene = self.scene
         rock = scene.rock
         scene.tool.bodies.connect()
         pose = scene.tool.bodies.pose
+        heat = {"temperature": scene.heat.network.temperature,
+                "thermal_alive": scene.tool.thermal_body.alive} if scene.heat else {"temperature": np.empty(0)}
         return {"time": scene.time, "stage": scene.stage, "rock_positions": access.rock_positions(rock),
                 "broken_bonds": np.bincount(rock.pairs[scene.bonds.status != 0].ravel(), minlength=rock.count),
                 "status": scene.bonds.status, "tool_offset": pose.offset, "tool_turn": pose.turn,
-                "temperature": scene.heat.network.temperature if scene.heat else np.empty(0), **scene.tool.snapshot()}
+                **heat, **scene.tool.snapshot()}
 
     def write_vtk(self, folder, number):
         """rock.NNNN.vtk and tool.NNNN.vtk: diameter, broken bonds, temperature; the tool's pieces, worn depth."""

@@ -103,6 +103,13 @@ def test_heat_behind_segments_shows_temperature(tmp_path):
     assert "tool up to 76.9 °C" in temperature.hottest(run, run.snapshot(3))
 
 
+def test_heat_of_a_tool_whose_nodes_are_not_written_shows_the_rock(tmp_path):
+    run = RunFolder(with_segments(make_run(tmp_path / "run")))
+    assert "thermal_positions" not in run.model and "Temperature" in titles(run)
+    assert temperature.hottest(run, run.snapshot(3)).startswith("rock up to")
+    assert "tool" not in temperature.hottest(run, run.snapshot(3))
+
+
 def test_segments_without_heat_have_no_temperature(tmp_path):
     run = RunFolder(with_segments(make_run(tmp_path / "run", heat=False)))
     assert "Temperature" not in titles(run)

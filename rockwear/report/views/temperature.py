@@ -93,8 +93,10 @@ def tip_figure(run, shown, stage):
     """The tip in the tool's own frame at several instants, one scale for all of a stage."""
     if not shown:
         return None
-    values = [tool_heat(run, run.snapshot(k))[2] for k in np.flatnonzero(run.stages == stage)]
-    low, high = min(v.min() for v in values), max(v.max() for v in values)
+    values = np.concatenate([tool_heat(run, run.snapshot(k))[2] for k in np.flatnonzero(run.stages == stage)])
+    if not len(values):
+        return None
+    low, high = values.min(), values.max()
     norm = rise_scale(high - low)
     figure, panels = grid(len(shown), 12, 1.0, most=4)
     for axes, (label, k) in zip(panels, shown.items()):
@@ -122,8 +124,9 @@ def in_space_figure(run):
     last = shots[-1]
     positions, radii, kelvin = tool_heat(run, last)
     for axes, (title, view) in zip(panels[3:], TOOL_VIEWS.items()):
-        paint(axes, warm_spheres(positions, radii, kelvin, norm, cold, view), edge=0.15, darkest=READABLE)
-        axes.set_title(f"tool {title}")
+        if len(kelvin):
+            paint(axes, warm_spheres(positions, radii, kelvin, norm, cold, view), edge=0.15, darkest=READABLE)
+            axes.set_title(f"tool {title}")
     panels[len(shots) - 1].set_title(f"{list(shown)[-1]}\n{hottest(run, last)}")
     figure.colorbar(ScalarMappable(norm, palette.TEMPERATURE), ax=panels, label=rise_label(cold), shrink=0.7,
                     extend="min")
