@@ -1,11 +1,12 @@
-"""M 13.4: model III of cutting bonded rock in space; the tooth changes its shape as worn particles go.
+"""Cutting bonded rock in space, model III: the tooth changes its shape as worn particles go [Rojek 2003, 13.4].
 
     yade -n -x yade_scripts/cutting_3d_removal.py [--full] [--name value ...] [--out DIR] [--resume]
 
-As model II (cutting_3d_wear.py), with M's removal: a particle goes once its worn depth exceeds its diameter. That rule
-passes nothing on to what it uncovers; --removal volume does, so that no wear is lost. The wear constant is to test the
-algorithm in a short run and is no steel's: k / mu = 5e-8 here. With our tooth and depth of cut model II wears a hundred
-times as deep as M's, so that M's own 5e-6 (--wear_coefficient 5e-7) takes the tip away before the first bond breaks.
+As model II (cutting_3d_wear.py), with the source's removal: a particle goes once its worn depth exceeds its diameter.
+That rule passes nothing on to what it uncovers; --removal volume does, so that no wear is lost. The wear constant is
+to test the algorithm in a short run and is no steel's: k / mu = 5e-8 here. With our tooth and depth of cut model II
+wears a hundred times as deep as the source's, so that the source's own 5e-6 (--wear_coefficient 5e-7) takes the tip
+away before the first bond breaks.
 """
 import runpy
 import sys

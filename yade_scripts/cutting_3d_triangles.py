@@ -1,11 +1,11 @@
-"""M 13.2: model I of cutting bonded rock in space, with a tooth of triangles; where a chip forms.
+"""Cutting bonded rock in space, model I: a tooth of triangles; where a chip forms [Rojek 2003, 13.2].
 
     yade -n -x yade_scripts/cutting_3d_triangles.py [--full] [--name value ...] [--out DIR] [--resume]
 
-Numbers are M's: kn = kt = 1e6 N/m, Rn = 500 N, Rt = 5000 N, mu = 0.5, 0.1 against the tooth, 0.04 m/s, no wear. M shows
-block, tooth and depth of cut in a figure only, and gives no density and no length: they are ours, 60 mm of cut. M's spheres
-of 9 mm come with --full (11,720 of them, M has 11,700); the defaults coarsen them 1.5 times. Models II and III:
-cutting_3d_wear.py, cutting_3d_removal.py.
+The numbers are the source's: kn = kt = 1e6 N/m, Rn = 500 N, Rt = 5000 N, mu = 0.5, 0.1 against the tooth, 0.04 m/s, no
+wear. It shows block, tooth and depth of cut in a figure only, and gives no density and no length: they are ours, 60
+mm of cut. The source's spheres of 9 mm come with --full (11,720 of them, the source has 11,700); by default radii are
+1.5 times as large. Models II and III: cutting_3d_wear.py, cutting_3d_removal.py.
 """
 import runpy
 import sys

@@ -1,10 +1,11 @@
-"""M 13.3: model II of cutting bonded rock in space, with a tooth of particles; where it wears, and how deep.
+"""Cutting bonded rock in space, model II: a tooth of particles; where it wears, and how deep [Rojek 2003, 13.3].
 
     yade -n -x yade_scripts/cutting_3d_wear.py [--full] [--name value ...] [--out DIR] [--resume]
 
-Numbers are M's: rock as in cutting_3d_triangles.py, tool particles of 1.5 mm, 0.4 m/s over 1 s, wear constant
-k / mu = 5e-9 and hardness 1 Pa, none removed. M's tooth is of 28,570 particles where it cuts and of triangles elsewhere;
-here all of it is of particles (28,576 with --full), since only its surface takes part in contact.
+The numbers are the source's: rock as in cutting_3d_triangles.py, tool particles of 1.5 mm, 0.4 m/s over 1 s, wear
+constant k / mu = 5e-9 and hardness 1 Pa, none removed. The source's tooth has 28,570 particles where it cuts and
+triangles elsewhere; here all of it is of particles (28,576 with --full), since only its surface particles take part
+in contact.
 """
 import runpy
 import sys

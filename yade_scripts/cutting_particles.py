@@ -1,10 +1,10 @@
-"""M 8.2: one cut with a tool of equal particles, its wear accumulated on the tool and its shape changed by it.
+"""One cut with a tool of equal particles: wear summed up on the tool, and its shape changed by it [Rojek 2003, 8.2].
 
     yade -n -x yade_scripts/cutting_particles.py [--removal none] [--name value ...] [--out DIR] [--resume]
 
-With `--removal none` the shape stays, as in M's first analysis. M cuts 40 mm in 1 s at 0.04 m/s, ten million steps; the
-defaults cut as far at 1 m/s, slow against every wave in the rock. (--velocity 0.04 --start_up 1 is M's.) Wear is M's,
-k / mu = 5e-9 and H = 1 Pa: a test of the algorithm, no steel.
+With `--removal none` the shape stays, as in the source's first analysis. The source cuts 40 mm in 1 s at 0.04 m/s, ten
+million steps (--velocity 0.04 --start_up 1); the defaults cut as far at 1 m/s, slow against every wave in the rock. The
+wear is the source's, k / mu = 5e-9 and H = 1 Pa: a test of the algorithm, no steel.
 """
 import runpy
 import sys

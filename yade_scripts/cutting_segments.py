@@ -1,12 +1,13 @@
-"""M 8.1: a rigid tool of straight segments cuts bonded sandstone; where the rock fails, and where the tool wears.
+"""A rigid tool of straight segments cuts bonded sandstone: where the rock fails, where the tool wears [Rojek 2003,
+8.1].
 
     yade -n -x yade_scripts/cutting_segments.py [--name value ...] [--out DIR] [--resume]
 
-As in M: kn = kt = 20e9 N/m and mu = 0.839 between tool and rock too, wear constant k / mu = 1 and hardness 1 Pa, so that
-the worn volume is no real one (it is the friction work) but shows where wear falls; the shape stays. To move the
-vertices: --reshape true --wear_coefficient 0.01128 --hardness 0 --acceleration 70; a warning says when the acceleration
-is too high for a tool that recedes. M cuts 40 mm at 0.04 m/s, some 9 million steps; the default goes the same way
-fifty times as fast (shorter ones meet a single chip), and --velocity 0.04 --start_up 1 is M's.
+As in the source: kn = kt = 20e9 N/m and mu = 0.839 between tool and rock too, wear constant k / mu = 1 and hardness 1
+Pa. The worn volume is then the friction work, which shows where wear falls; the shape stays. To move the vertices:
+--reshape true --wear_coefficient 0.01128 --hardness 0 --wear_acceleration 70; a warning says when the wear acceleration
+is too high for a tool that recedes. The source cuts 40 mm at 0.04 m/s, some 9 million steps (--velocity 0.04
+--start_up 1); the default goes the same way fifty times as fast. Shorter ways meet a single chip.
 """
 import runpy
 import sys

@@ -1,11 +1,12 @@
-"""M 10.1: a cut with heat - where friction heats tool and rock, with conduction and without.
+"""A cut with heat: where friction heats tool and rock, with conduction and without [Rojek 2003, 10.1].
 
     yade -n -x yade_scripts/cutting_thermal.py [--conduction false] [--name value ...] [--out DIR] [--resume]
 
-With `--conduction false` all heat stays with the particles that it arose at, as in M's first case. M cuts 40 mm in 1 s
-at 0.04 m/s: nine million steps. The mechanics here run a hundred times as fast as the process, at 4 m/s, slow against
-every wave in the rock; heat has its full second. (--time_scale 1 is M's own, in some four hours.) Wear is M's, k / mu =
-1e-10 and H = 100 Pa: little, and no steel. M shares friction heat equally; it gives no conductance from tool to rock.
+With `--conduction false` all heat stays with the particles that it arose at, as in the source's first case. The source
+cuts 40 mm in 1 s at 0.04 m/s: nine million steps (--time_scale 1, some four hours). The mechanics here run a hundred
+times as fast as the process, at 4 m/s, slow against every wave in the rock; heat has its full second. The wear is the
+source's, k / mu = 1e-10 and H = 100 Pa: little, and no steel. The source shares friction heat equally; it gives no
+conductance from tool to rock.
 """
 import runpy
 import sys

@@ -1,10 +1,10 @@
-"""M 13.1: a tooth of triangles through loose spheres that have settled under gravity.
+"""A tooth of triangles goes through loose spheres that have settled under gravity [Rojek 2003, 13.1].
 
     yade -n -x yade_scripts/granular_3d.py [--full] [--name value ...] [--out DIR] [--resume]
 
-Numbers are M's: kn = 1e6 N/m, mu = 0.1 between particles and against the tooth, 0.04 m/s, no cohesion, no wear. M shows
-box, tooth and depth of cut in a figure only, and gives no density: they are ours. M's 11,700 spheres of 9 mm come with
---full; the defaults coarsen them 1.5 times. The box's bottom and sides are spheres that are held.
+The numbers are the source's: kn = 1e6 N/m, mu = 0.1 between particles and against the tooth, 0.04 m/s, no cohesion, no
+wear. It shows box, tooth and depth of cut in a figure only, and gives no density: they are ours. The source's 11,700
+spheres of 9 mm come with --full; by default radii are 1.5 times as large. The box's bottom and sides are fixed spheres.
 """
 import runpy
 import sys

@@ -1,10 +1,10 @@
-"""M 7.6: three benchmarks of heat conduction on square, triangular and random packings, beside their exact solutions.
+"""Heat conduction on square, triangular and random packings beside exact solutions [Rojek 2003, 7.6].
 
     yade -n -x yade_scripts/heat_benchmarks.py [--benchmark slab_source|half_space|jump] [--packing random|square|
     triangular] [--across 80] [--name value ...] [--out DIR] [--resume]
 
-Without words all nine, each at three resolutions: profiles over the exact ones, errors, and the order of convergence.
-The parameters, their defaults and sources are those of rockwear.scenes.heat_benchmarks; --help prints them.
+By default all nine cases, each at three resolutions: profiles over the exact ones, errors, and the order of
+convergence.
 """
 import runpy
 import sys

@@ -1,9 +1,9 @@
-"""M 9.3: wear of a ripper tooth in 20 cycles - where it wears, how its shape changes, how fast its mass goes.
+"""Wear of a ripper tooth in 20 cycles: where it wears, how its shape changes, how fast its mass goes [Rojek 2003, 9.3].
 
     yade -n -x yade_scripts/ripper.py [--name value ...] [--out DIR] [--resume]
 
-Numbers are M's. M shows the tooth in figures only: rake, clearance, size and depth of cut are ours. Its hardness is
-constant, so nothing is heated here; ripper_temperature.py does that.
+The numbers are the source's. It shows the tooth in figures only: rake, clearance, size and depth of cut are ours. The
+hardness is constant, so nothing is heated here; ripper_temperature.py does that.
 """
 import runpy
 import sys

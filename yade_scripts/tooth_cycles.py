@@ -1,9 +1,9 @@
-"""M 9.2, thermo-mechanical: a test tooth cuts bonded sandstone, heats up, wears and changes its shape over many cycles.
+"""A test tooth cuts bonded sandstone, heats up, wears and changes its shape over many cycles [Rojek 2003, 9.2].
 
     yade -n -x yade_scripts/tooth_cycles.py [--name value ...] [--out DIR] [--resume]
 
-The parameters, their defaults and sources are those of rockwear.scenes.cutting; --help prints them. M shows the tooth in a
-figure only and gives no depth of cut, air gap or background damping: these are ours.
+--help prints all parameters in groups, with their defaults, units and sources. The source shows the tooth in a figure
+only and gives no depth of cut, air gap or background damping: these are ours.
 """
 import runpy
 import sys

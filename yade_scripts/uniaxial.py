@@ -1,9 +1,10 @@
-"""M 5.1: a square specimen of sandstone, 2100 discs, compressed (or pulled) between two platens until it fails.
+"""A square specimen of sandstone, 2100 discs, compressed or pulled between two platens until it fails [Rojek 2003,
+5.1].
 
     yade -n -x yade_scripts/uniaxial.py [--test compression|tension] [--name value ...] [--out DIR] [--resume]
 
-The parameters, their defaults and sources are those of calibration.laboratory.uniaxial; --help prints them. M moves the walls at
-1 mm/s; the default is the fastest speed at which E and strength stay within 2 % of those of slow loading.
+The source moves the walls at 1 mm/s; the default is the fastest speed at which Young's modulus and strength stay within
+2 % of those of slow loading.
 """
 import runpy
 import sys

@@ -26,8 +26,9 @@ ROCK = (
     Parameter("scale_factor", 4.0, "", number(1, 10), "factor on the radii of rock and, for the same macroscopic "
               "strength, on the strengths of its bonds; 1: the source's"))
 MOTION = (
-    Parameter("feed", 0.06, "m", above_zero, "swing between two picks on the same track; the free surface of the rock is "
-              "the path of the pick before, and the chip feed x sin(angle) thick", "ours: [Rojek 2014] has a figure only"),
+    Parameter("feed", 0.06, "m", above_zero, "swing between two picks on the same track; the free surface of the rock "
+              "is the path of the pick before, and the chip feed x sin(angle) thick",
+              "ours: [Rojek 2014] has a figure only"),
     Parameter("cutter_radius", 0.7, "m", above_zero, "distance of the tip from the axis of rotation",
               "[Rojek 2014, 5.1]"),
     Parameter("angular_velocity", 1.6204, "rad/s", above_zero, "of the cutter head", "[Rojek 2014, 5.1]"),
