@@ -17,7 +17,7 @@ from rockwear.run.main import main
 from rockwear.scenes import cutting_3d
 
 REMOVAL = cutting_3d.groups(
-    velocity=0.4, lowering_velocity=0.4, wear_coefficient=0.1 * 5e-8, removal="depth", wear_period=2, snapshot_period=0.02,
-    record_period=1e-3)
+    velocity=0.4, lowering_velocity=0.4, wear_coefficient=0.1 * 5e-8, removal="depth", wear_period=2,
+    snapshot_period=0.02, record_period=1e-3)
 
 main("cutting_3d_removal", REMOVAL, cutting_3d.make)

@@ -16,7 +16,7 @@ from rockwear.scenes import cutting
 
 TOOL = cutting.groups(
     tool_radius_min=0.5e-3, tool_radius_max=0.5e-3, tool_kn=20e9, tool_kt=20e9, tool_mu=0.839, velocity=1.0,
-    start_up=0.04, cycles=0, removal="depth", wear_coefficient=0.839 * 5e-9, hardness=1.0, wear_acceleration=1.0, heat=False,
-    record_period=1e-4)
+    start_up=0.04, cycles=0, removal="depth", wear_coefficient=0.839 * 5e-9, hardness=1.0, wear_acceleration=1.0,
+    heat=False, record_period=1e-4)
 
 main("cutting_particles", TOOL, cutting.make)

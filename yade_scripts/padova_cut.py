@@ -14,7 +14,7 @@ from rockwear.run.main import main
 from rockwear.scenes import cutting
 
 PADOVA = cutting.groups(
-    bond_law="padova", width=0.06, height=0.04, radius_min=1.5e-3, radius_max=2.2e-3, tooth_height=0.03, tooth_width=0.02,
-    rake=10.0, clearance=10.0, tip_radius=2e-3, depth_of_cut=0.01, start_up=2e-3, cycles=0)
+    bond_law="padova", width=0.06, height=0.04, radius_min=1.5e-3, radius_max=2.2e-3, tooth_height=0.03,
+    tooth_width=0.02, rake=10.0, clearance=10.0, tip_radius=2e-3, depth_of_cut=0.01, start_up=2e-3, cycles=0)
 
 main("padova_cut", PADOVA, cutting.make)
