@@ -25,7 +25,7 @@ class Recorder(Engine):
         return {name.split(" [")[0]: rows[:, i] for i, name in enumerate(self.header)}
 
     def state(self):
-        return {"header": list(self.header), "rows": np.array(self.rows, float)}
+        return {"header": np.array(self.header, str), "rows": np.array(self.rows, float)}
 
     def restore(self, state):
         self.header, self.rows = [str(name) for name in state["header"]], state["rows"].tolist()

@@ -22,7 +22,7 @@ class SofteningBond:
     rotates with the contact and increments. Where nothing yields, the trial is the answer, and nothing is written.
     """
 
-    __slots__ = ("interaction", "geom", "phys", "bodies", "radii",
+    __slots__ = ("interaction", "geom", "phys", "bodies",
                  "law", "bond", "overlap", "un", "Fn", "dissipated", "elastic_steps", "tensile")
 
     def __init__(self, *, law, bond, overlap, un=0.0, Fn=0.0, dissipated=0.0, elastic_steps=0):
@@ -32,7 +32,7 @@ class SofteningBond:
     def connect(self, interaction):
         """Use this contact of the scene that is in O now."""
         self.interaction, self.geom, self.phys = interaction, interaction.geom, interaction.phys
-        self.bodies, self.radii = (interaction.id1, interaction.id2), (self.geom.refR1, self.geom.refR2)
+        self.bodies = interaction.id1, interaction.id2
 
     def release(self):
         """Remove the limits of YADE's law: from now on `advance` gives the force of each step."""
@@ -79,11 +79,11 @@ class SofteningBond:
                 return None
         else:
             self.tensile = law.kn * (un - un_plastic) / law.Rn >= law.kt * ut.norm() / law.Rt
-        (first, second), (arm_1, arm_2), moment = self.bodies, self.radii, change.cross(normal)
+        (first, second), moment = self.bodies, change.cross(normal)
         forces.addF(first, -change)
         forces.addF(second, change)
-        forces.addT(first, moment * (arm_1 - 0.5 * penetration))
-        forces.addT(second, moment * (arm_2 - 0.5 * penetration))
+        forces.addT(first, moment * (geom.refR1 - 0.5 * penetration))
+        forces.addT(second, moment * (geom.refR2 - 0.5 * penetration))
 
         kt, ut_before = phys.ks, ut - increment
         elastic = ut - Vector3(bond.ut_plastic)
