@@ -451,7 +451,10 @@ def yade_now():
 
 
 def visits_due(period, start):
-    """Visits in SAVED steps from iteration `start`; a PyRunner comes in its first step if `start` is a period or more."""
+    """Visits in SAVED steps from iteration `start`.
+
+    A PyRunner comes in its first step if `start` is at least its period.
+    """
     return (start >= period) + (SAVED - 1) // period
 
 
