@@ -1,15 +1,15 @@
-"""Archard's wear law with a hardness that depends on temperature (M ch. 6, P ch. 4).
+"""Archard's wear law with a hardness that depends on temperature [Rojek 2003, ch. 6; Rojek 2014, ch. 4].
 
-A surface under the pressure p that slides at the speed v loses depth at the rate
+A surface under the pressure p that slides at the speed v is worn at the rate
 
-    dw/dt = k p v / H(theta)                                     (M 6.7, P 61)
+    dw/dt = k p v / H(theta)                      [Rojek 2003, eq. 6.7; Rojek 2014, eq. 61]
 
 or, with Coulomb friction p_t = mu p and the dissipation rate D = p_t v per area,
 
-    dw/dt = (k / mu) D / H(theta)                                (M 6.9)
+    dw/dt = (k / mu) D / H(theta)                 [Rojek 2003, eq. 6.9]
 
-so that the friction work W wears the volume V = (k / mu) W / H, whatever the area it is spread over. The laws that
-engines use, by particle, are in wear_laws.
+so that the friction work W wears the volume V = (k / mu) W / H, independent of the area over which it is distributed.
+The laws by particle or facet, which the engines use, are in wear_laws.
 """
 import warnings
 
@@ -19,15 +19,16 @@ from rockwear.kernels.checks import ParameterError, not_negative, positive, requ
 
 KELVIN = 273.15
 BRINELL = 9.80665e6
-"""Pa per HB: Brinell numbers are kgf/mm2. (M rounds to 10e6.)"""
+"""Pa per HB: Brinell numbers are in kgf/mm2. ([Rojek 2003] rounds to 10e6.)"""
 
 
 class Hardness:
-    """Brinell hardness against temperature, piecewise linear between the rows of a table (M 6.6).
+    """Brinell hardness as a function of temperature, piecewise linear in a table [Rojek 2003, eq. 6.6].
 
-    celsius: (n,) rising temperatures in deg C; brinell: (n,) positive HB in kgf/mm2.
-    Called with kelvin (scalar or array) it gives Pa. Outside the table the nearest row holds, with one warning.
-    Raises ParameterError for a table that is not rising, not positive, not finite or not of equal lengths.
+    celsius: (n,) increasing temperatures in deg C; brinell: (n,) positive HB in kgf/mm2.
+    An instance called with kelvin (scalar or array) returns Pa. Outside the table the value of the nearest row is used,
+    with one warning. Raises ParameterError for temperatures that do not increase, for values that are not finite,
+    hardness not above 0, and lengths that differ.
     """
 
     def __init__(self, celsius, brinell):
@@ -36,14 +37,14 @@ class Hardness:
         require(self.kelvin.ndim == 1 and self.kelvin.shape == self.pascal.shape, "brinell", np.shape(brinell),
                 f"of the shape of celsius, {np.shape(celsius)}")
         require(np.all(np.isfinite(self.kelvin)) and np.all(np.diff(self.kelvin) > 0),
-                "celsius", list(np.ravel(celsius)), "finite and rising", "deg C")
+                "celsius", list(np.ravel(celsius)), "finite and increasing", "deg C")
         require(np.all(np.isfinite(self.pascal)) and np.all(self.pascal > 0),
                 "brinell", list(np.ravel(brinell)), "finite and greater than 0", "kgf/mm2")
         self._warned = False
 
     @classmethod
     def constant(cls, pascal):
-        """A hardness (Pa) that does not depend on temperature."""
+        """A hardness (Pa) independent of temperature. Raises ParameterError unless it is greater than 0."""
         return cls([20.0], [positive("hardness", pascal, "Pa") / BRINELL])
 
     @property
@@ -60,26 +61,26 @@ class Hardness:
         return self.nearest(kelvin)
 
     def nearest(self, kelvin):
-        """The same without a warning, for those who ask `leaves` themselves."""
+        """Hardness (Pa) as by a call, without a warning: for callers that check `leaves` themselves."""
         found = np.interp(kelvin, self.kelvin, self.pascal)
         return float(found) if found.ndim == 0 else found
 
     def leaves(self, low, high):
-        """True where temperatures (K) from low to high leave the table; a constant hardness has no end."""
+        """Whether the range of temperatures (K) low..high exceeds the table; False for a constant hardness."""
         first, last = self.limits
         return first < last and (low < first or high > last)
 
 
 MET71 = Hardness([0, 200, 300, 400, 500, 600], [500, 491, 480, 439, 362, 241])
-"""Steel MET 71 (M table 6.1)."""
+"""Steel MET 71 [Rojek 2003, table 6.1]."""
 MET91 = Hardness([0, 200, 300, 400, 500, 600], [515, 509, 498, 457, 375, 247])
-"""Steel MET 91 (M table 6.1)."""
+"""Steel MET 91 [Rojek 2003, table 6.1]."""
 
 
 def wear_rate(*, k, pressure, slip_velocity, hardness):
-    """Rate of the worn depth, k p v / H (M 6.7, P 61), m/s.
+    """Rate of the worn depth (m/s), k p v / H [Rojek 2003, eq. 6.7; Rojek 2014, eq. 61].
 
-    k: Archard's coefficient (-); pressure: Pa, scalar or array; slip_velocity: m/s, its sign does not matter;
+    k: wear coefficient of Archard's law (-); pressure: Pa, scalar or array; slip_velocity: m/s, of any sign;
     hardness: Pa at the temperature of the surface. Raises ParameterError for k < 0, pressure < 0 or hardness <= 0.
     """
     not_negative("k", k)
@@ -93,9 +94,10 @@ def wear_rate(*, k, pressure, slip_velocity, hardness):
 
 
 def wear_coefficient(*, depth, pressure, distance, hardness):
-    """k of a laboratory test, w H / (p s) (M 6.11, integrated over the sliding distance s at constant p and H), -.
+    """Wear coefficient (-) of a laboratory test at constant p and H, k = w H / (p s) [Rojek 2003, eq. 6.11].
 
-    depth: worn depth (m); pressure: Pa; distance: m; hardness: Pa. Raises ParameterError unless all are positive.
+    depth: worn depth w, m; pressure: Pa; distance: sliding distance s, m; hardness: Pa.
+    Raises ParameterError unless all are positive.
     """
     return (positive("depth", depth, "m") * positive("hardness", hardness, "Pa")
             / (positive("pressure", pressure, "Pa") * positive("distance", distance, "m")))

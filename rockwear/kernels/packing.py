@@ -2,10 +2,10 @@
 
     E = ½ Σ_contacts (r_i + r_j − d_ij)₊² + Σ_walls (r_i − d_i)₊²
 
-The particles, scattered at random with the wanted volume, repel each other where they overlap; a wall repels like the
-particle's own mirror image, so that overlaps there are those of the bulk. The minimum (L-BFGS) is a jammed packing in
-static equilibrium. Its particles overlap a little, the more the lower the porosity: bonds made on it start stress-free
-at their distance of bonding, as with the initial gaps g0 of P (6).
+Particles of the given total volume at random positions repel each other where they overlap. A wall repels like the
+mirror image of the particle, so that overlaps at walls equal those inside. The minimum (L-BFGS) is a jammed packing in
+static equilibrium. Its overlaps are small and increase with decreasing porosity: bonds made on it are stress-free at
+their initial distance, as with the initial gaps g0 of [Rojek 2014, eq. 6].
 
 Porosity is 1 − Σ V_i / V of nominal particle volumes, overlaps counted twice.
 """
@@ -18,21 +18,21 @@ from scipy.optimize import brentq
 from scipy.spatial import cKDTree
 from scipy.stats import qmc
 
-from rockwear.kernels import polygon as outline
 from rockwear.kernels.checks import ParameterError, positive, require, within
+from rockwear.kernels.polygon import area, check_polygon, nearest, nearest_on_edges, sides
 
-SKIN = 0.6  # margin of the neighbour list, in least radii; a list lives until a particle has moved half of it
-FORCE_TOLERANCE = 1e-4  # unbalanced force to be reached, for unit contact stiffness, in least radii
-ENERGY_TOLERANCE = 1e-8  # or else the relative decrease of E in MEMORY steps running: on the chords of an arc discs hop
-SETTLING = 0.3  # the same for a tiled specimen, over the mean overlap of its tile: what is left is near the walls
+MARGIN = 0.6  # of the neighbour list, in least radii; it is renewed when a particle has moved by half of it
+FORCE_TOLERANCE = 1e-4  # largest unbalanced force at the minimum, for unit contact stiffness, in least radii
+ENERGY_TOLERANCE = 1e-8  # or relative decrease of E in MEMORY steps: on the chords of an arc discs do not come to rest
+TILE_TOLERANCE = 0.3  # unbalanced force of a tiled specimen over the mean overlap of its tile
 MAX_ITERATIONS = 10_000
-LONGEST_STEP = 0.5  # of a particle in one direction, in least radii
+LONGEST_STEP = 0.5  # component of a particle's displacement in an iteration, in least radii
 SHORTEST_STEP = 1e-12  # below it the energy changes by rounding only
-MEMORY = 10  # steps that L-BFGS remembers
-MAX_IMBALANCE = 0.05  # jammed packings end near 1e-4, marginal ones at 0.02, loose ones from 0.055 up
+MEMORY = 10  # steps kept by L-BFGS
+MAX_IMBALANCE = 0.05  # jammed packings end near 1e-4, marginal ones at 0.02, loose ones above 0.055
 REGRADINGS = 2
 MAX_PARTICLES = 5_000_000
-ROOM = 3  # the container's inscribed radius, in largest particle radii, that leaves something to be called a packing
+LEAST_INRADIUS = 3  # inscribed radius of a container, in largest particle radii
 POROSITY_LIMITS = {2: (0.02, 0.20), 3: (0.20, 0.42)}
 
 
@@ -70,7 +70,7 @@ def volumes(radii, dimensions):
 
 def porosity(packing):
     """1 − Σ V_i / V with nominal particle volumes: what overlaps is counted twice."""
-    volume = math.prod(packing.box) if packing.box else outline.area(packing.polygon)
+    volume = math.prod(packing.box) if packing.box else area(packing.polygon)
     return 1 - volumes(packing.radii, packing.positions.shape[1]).sum() / volume
 
 
@@ -95,11 +95,11 @@ def separation(positions, i, j, period=None):
 
 
 def contacts(positions, radii, gap_max=0.0, period=None):
-    """Pairs (m, 2), i < j in ascending order, with |x_j − x_i| − r_i − r_j <= gap_max: P (6).
+    """Pairs (m, 2), i < j in ascending order, with |x_j − x_i| − r_i − r_j <= gap_max [Rojek 2014, eq. 6].
 
     positions (n, d), radii (n,), gap_max and the sides `period` (d,; 0: not periodic) in m. A periodic side must be
-    longer than twice the greatest reach 2 r + gap_max. Particles are searched by classes of radius, each within a
-    factor of 2, so that large ones among small ones do not widen the search of all.
+    longer than twice the greatest distance 2 r + gap_max. Particles are searched by classes of radius, each within a
+    factor of 2, so that a few large particles do not widen the search for all.
     """
     positions, radii = np.asarray(positions, dtype=float), np.asarray(radii, dtype=float)
     found = [np.empty((0, 2), dtype=np.intp)]
@@ -124,7 +124,7 @@ def contacts(positions, radii, gap_max=0.0, period=None):
 
 
 def _wrap(positions, period):
-    """Positions brought into [0, period) where it is not 0."""
+    """Positions mapped into [0, period) where it is not 0."""
     inside = np.where(period > 0, np.mod(positions, np.where(period > 0, period, 1.0)), positions)
     # the remainder of a tiny negative number rounds to the period itself
     return np.where((period > 0) & (inside >= period), 0.0, inside)
@@ -144,7 +144,7 @@ class _Box:
         """Distance (n,) from the boundary, negative outside."""
         return np.where(self.walled, np.minimum(points, self.high - points), np.inf).min(1)
 
-    def press(self, points, radii):
+    def repel(self, points, radii):
         """Energy of the walls and its gradient (n, d)."""
         low = self.walled * np.maximum(radii[:, None] - points, 0.0)
         high = self.walled * np.maximum(points + radii[:, None] - self.high, 0.0)
@@ -152,10 +152,10 @@ class _Box:
 
 
 class _Polygon:
-    """Polygon whose sides, the runs of edges between its corners, are walls.
+    """Polygon whose sides, the edges between two corners, are walls.
 
-    A disc in a corner is held by both sides. Were it held by the nearest one alone, its energy would have a kink along
-    the bisector, where it could not come to rest; the chords of an arc, on the other hand, are one wall.
+    A disc in a corner is repelled by both sides: with the nearest one alone the gradient of its energy would be
+    discontinuous on the bisector, and L-BFGS would not converge. The chords of an arc are one wall.
     """
 
     period = None
@@ -163,22 +163,22 @@ class _Polygon:
     def __init__(self, vertices):
         self.vertices = vertices
         self.low, self.high = vertices.min(0), vertices.max(0)
-        self.volume = outline.area(vertices)
+        self.volume = area(vertices)
         trial = self.low + qmc.Halton(2, scramble=False).random(4096) * (self.high - self.low)
         self.inradius = self.depth(trial).max()
-        self.sides = outline.sides(vertices)
+        self.sides = sides(vertices)
 
     def depth(self, points):
         """Distance (n,) from the boundary, negative outside."""
-        return -outline.nearest(points, self.vertices)[0]
+        return -nearest(points, self.vertices)[0]
 
-    def press(self, points, radii):
+    def repel(self, points, radii):
         """Energy of the walls and its gradient (n, 2)."""
-        distance, _, normal = outline.nearest(points, self.vertices)
+        distance, _, normal = nearest(points, self.vertices)
         escaped = np.where(distance > 0, radii + distance, 0.0)
         energy, gradient = (escaped**2).sum(), 2 * escaped[:, None] * normal
         for start, edge in self.sides:
-            outward = outline.nearest_on_edges(points, start, edge)[0] - points
+            outward = nearest_on_edges(points, start, edge)[0] - points
             away = np.linalg.norm(outward, axis=1)
             overlap = np.where(distance > 0, 0.0, np.maximum(radii - away, 0.0))
             energy += (overlap**2).sum()
@@ -194,30 +194,30 @@ class _Energy:
         self.listed_at = None
 
     def _list(self, positions):
-        surface = SKIN * self.unit
+        margin = MARGIN * self.unit
         self.listed_at = positions.copy()
-        self.pairs = contacts(positions, self.radii, surface, self.container.period)
-        self.at_wall = np.flatnonzero(self.container.depth(positions) < self.radii + surface)
+        self.pairs = contacts(positions, self.radii, margin, self.container.period)
+        self.at_wall = np.flatnonzero(self.container.depth(positions) < self.radii + margin)
 
     def __call__(self, flat):
         x = flat.reshape(len(self.radii), -1) * self.unit
-        if self.listed_at is None or ((x - self.listed_at) ** 2).sum(1).max() > (SKIN / 2 * self.unit) ** 2:
+        if self.listed_at is None or ((x - self.listed_at) ** 2).sum(1).max() > (MARGIN / 2 * self.unit) ** 2:
             self._list(x)
         i, j = self.pairs.T
         delta = separation(x, i, j, self.container.period)
         distance = np.sqrt((delta**2).sum(1))
         overlap = np.maximum(self.radii[i] + self.radii[j] - distance, 0.0)
-        # two centres in one place have no direction to part in: they wait for another neighbour to push
+        # coincident centres have no direction of repulsion: another neighbour must separate them
         push = (overlap / np.maximum(distance, 1e-12 * self.unit))[:, None] * delta
         n = len(x)
         gradient = np.column_stack([np.bincount(i, p, n) - np.bincount(j, p, n) for p in push.T]).astype(float)
-        wall_energy, wall_push = self.container.press(x[self.at_wall], self.radii[self.at_wall])
+        wall_energy, wall_push = self.container.repel(x[self.at_wall], self.radii[self.at_wall])
         gradient[self.at_wall] += wall_push
         self.contact_force = overlap.sum() / self.unit
         return (0.5 * _dot(overlap, overlap) + wall_energy) / self.unit**2, gradient.ravel() / self.unit
 
 
-class _Restless(Exception):
+class _NotConverged(Exception):
     """No minimum was found within MAX_ITERATIONS."""
 
 
@@ -229,8 +229,8 @@ def _minimise(energy, x, tolerance):
     """A minimum of `energy`, a function x -> (value, gradient), near x: L-BFGS with backtracking.
 
     Nocedal and Wright, Numerical Optimization, algorithms 7.4, 7.5 and 3.1, with no component of a step longer than
-    LONGEST_STEP. Not scipy's, whose sums are left to a threaded BLAS from scipy 1.15 on: there the packing of a seed
-    would depend on the number of threads, and on busy cores the waiting threads made it many times slower.
+    LONGEST_STEP. Not scipy's, which sums by a threaded BLAS from scipy 1.15 on: the packing of a seed would depend on
+    the number of threads, and on busy cores the synchronisation made it many times slower.
     """
     value, gradient = energy(x)
     memory, stalled = deque(maxlen=MEMORY), 0
@@ -263,11 +263,11 @@ def _minimise(energy, x, tolerance):
         stalled = stalled + 1 if gained <= ENERGY_TOLERANCE * value else 0
         if stalled == MEMORY:
             return x
-    raise _Restless
+    raise _NotConverged
 
 
 def _relax(container, positions, radii, tolerance=FORCE_TOLERANCE):
-    """Positions (n, d) of least overlap energy near the given ones, and the imbalance left."""
+    """Positions (n, d) at a minimum of the overlap energy near the given ones, and their imbalance."""
     unit = radii.min()
     energy = _Energy(container, radii, unit)
     x = _minimise(energy, (positions / unit).ravel(), tolerance)
@@ -291,10 +291,10 @@ def _scale_at(radius_scale, points, largest):
 
 
 def _scatter(container, radius, solid, scale_at, rng):
-    """Places (n, d), draws (n,) from [0, 1) for the radii, and scales (n,) of particles of volume about `solid`.
+    """Positions (n, d), numbers (n,) in [0, 1) for the radii, and scales (n,) of particles of volume about `solid`.
 
-    Places come from a scrambled Halton sequence, more even than independent ones: the particles then need not move
-    far. A point is kept with probability scale^-d, so that the solid volume is spread evenly.
+    Positions are from a scrambled Halton sequence, which is more even than independent ones: displacements are short.
+    A point is kept with probability scale^-d, so that the solid volume is uniform.
     """
     dimensions = len(container.low)
     halton = qmc.Halton(dimensions + 1, seed=rng)
@@ -318,8 +318,8 @@ def _scatter(container, radius, solid, scale_at, rng):
 def _fit_radii(radius, draws, scales, solid, dimensions):
     """Radii (n,) whose volumes add up to `solid`.
 
-    The draws u are bent to u^p, which keeps the radii within their bounds. Equal radii leave nothing to bend: they
-    then share one factor, which makes up for the part of a particle that is missing or too much.
+    The numbers u are replaced by u^p, which keeps the radii within their bounds. Equal radii do not depend on p: a
+    common factor corrects them for a fraction of a particle.
     """
     def excess(p):
         return volumes(radius(draws**p) * scales, dimensions).sum() - solid
@@ -335,32 +335,32 @@ def pack(*, box=None, polygon=None, radius_min, radius_max, porosity, seed, radi
     """Jammed random packing of discs (2D) or spheres (3D) in a box or of discs in a polygon, as a Packing.
 
     box        sides (w, h) or (w, h, d) in m, one corner at the origin; or
-    polygon    vertices (k, 2) in m of any simple polygon: discs line it from inside
+    polygon    vertices (k, 2) in m of any simple polygon: discs touch it from inside
     radius_min, radius_max    radii are uniform in between (m)
     porosity   1 − Σ V_i / V, met to rounding. Measured on discs with r_max/r_min = 1.5 in 109 mm: 0.03 leaves a mean
                overlap of 5 % of a diameter, 0.12 one of 1.8 % and 4.6 neighbours a disc, 0.16 one of 0.4 % and 4.1;
-               at 0.18 the discs no longer hold each other (periodic: 0.17). Spheres: 0.20 leaves 5.3 %, 0.36 1.2 %,
+               at 0.18 the discs are no longer jammed (periodic: 0.17). Spheres: 0.20 leaves 5.3 %, 0.36 1.2 %,
                0.40 0.1 %; loose at 0.42 (periodic: 0.38).
     seed       integer; the same seed gives the same packing on the same numpy and scipy
     radius_scale    grading field f(positions (n, d)) -> factors (n,), at least 1: the radius at a place is a draw from
                [radius_min, radius_max] times the field there
-    jammed     False: particles that do not hold each other are welcome, for a fill that is to settle
-    periodic   one flag, or one a direction: opposite sides of the box meet, there is no wall
+    jammed     False: loose particles are accepted, for a fill that is to settle
+    periodic   one flag, or one for each direction: periodic boundary in place of two walls
 
-    Discs of nearly equal radii order themselves into hexagonal patches: keep r_max/r_min above 1.2 or
-    so where isotropy matters. Time: about a second for 2,100 discs, 4 s for a tooth of 6,300; see tile for more.
+    Discs of nearly equal radii form hexagonal patches: keep r_max/r_min above 1.2 where isotropy matters. Time: about a
+    second for 2,100 discs, 4 s for a tooth of 6,300; for larger specimens see `tile`.
 
     Raises ParameterError for lengths that are not positive, radius_min > radius_max, a container whose inscribed
-    radius is less than ROOM particle radii, a field below 1, and a porosity outside POROSITY_LIMITS or at which the
-    particles do not hold each other, or so nearly hold each other that they are not at rest after MAX_ITERATIONS.
+    radius is less than LEAST_INRADIUS particle radii, a field below 1, and a porosity outside POROSITY_LIMITS, or at
+    which the particles are not jammed, or so nearly jammed that MAX_ITERATIONS do not suffice.
     """
     container, where = _container(box, polygon, periodic)
     dimensions = len(container.low)
     radius_min, radius_max = positive("radius_min", radius_min, "m"), positive("radius_max", radius_max, "m")
     require(radius_min <= radius_max, "radius_min", radius_min, f"at most radius_max = {radius_max:g}", "m")
-    room = container.inradius / ROOM
-    require(radius_max <= room, "radius_max", radius_max,
-            f"at most {room:g}, 1/{ROOM} of the radius inscribed in the container", "m")
+    largest = container.inradius / LEAST_INRADIUS
+    require(radius_max <= largest, "radius_max", radius_max,
+            f"at most {largest:g}, 1/{LEAST_INRADIUS} of the radius inscribed in the container", "m")
     porosity = within("porosity", porosity, *POROSITY_LIMITS[dimensions])
     solid = (1 - porosity) * container.volume
     require(solid / volumes(radius_min, dimensions) <= MAX_PARTICLES, "radius_min", radius_min,
@@ -372,56 +372,56 @@ def pack(*, box=None, polygon=None, radius_min, radius_max, porosity, seed, radi
         return radius_min + (radius_max - radius_min) * u
 
     def scale_at(points):
-        return _scale_at(radius_scale, points, room / radius_max)
+        return _scale_at(radius_scale, points, largest / radius_max)
 
     positions, draws, scale = _scatter(container, radius, solid, scale_at, rng)
     radii = _fit_radii(radius, draws, scale, solid, dimensions)
     try:
         positions, imbalance = _relax(container, positions, radii)
-        # the particles have moved in the field: fit the sizes to their new places
+        # the particles have moved in the grading field: fit the radii to their new positions
         for _ in range(REGRADINGS if radius_scale is not None else 0):
             scale = scale_at(positions)
             radii = _fit_radii(radius, draws, scale, solid, dimensions)
             positions, imbalance = _relax(container, positions, radii)
-    except _Restless:
-        raise ParameterError("porosity", porosity, "lower or higher: so near to where particles begin to hold each other "
-                             f"these are not at rest after {MAX_ITERATIONS} iterations") from None
+    except _NotConverged:
+        raise ParameterError("porosity", porosity, "lower or higher: so near to the jamming transition the packing is "
+                             f"not in equilibrium after {MAX_ITERATIONS} iterations") from None
     require(imbalance <= MAX_IMBALANCE or not jammed, "porosity", porosity,
-            "lower for the particles to hold each other: at this one they are loose")
+            "lower: with this one the packing is loose, not jammed")
     return Packing(positions, radii, scale, imbalance, **where)
 
 
 def _container(box, polygon, periodic):
-    """The container, and how a Packing names it."""
+    """The container, and its fields in a Packing."""
     require((box is None) != (polygon is None), "box", box, "given, or else polygon, not both")
     if box is None:
-        vertices = outline.check_polygon(polygon)
+        vertices = check_polygon(polygon)
         require(not np.any(periodic), "periodic", periodic, "False in a polygon")
         return _Polygon(vertices), {"polygon": vertices}
     require(np.ndim(box) == 1 and len(box) in (2, 3), "box", box, "two or three sides", "m")
-    sides = tuple(positive("box", side, "m") for side in box)
-    require(np.ndim(periodic) == 0 or np.shape(periodic) == (len(sides),), "periodic", periodic, "one flag a direction")
-    flags = tuple(bool(flag) for flag in np.broadcast_to(periodic, len(sides)))
-    return _Box(sides, flags), {"box": sides, "periodic": flags}
+    lengths = tuple(positive("box", side, "m") for side in box)
+    require(np.shape(periodic) in ((), (len(lengths),)), "periodic", periodic, "one flag, or one for each direction")
+    flags = tuple(bool(flag) for flag in np.broadcast_to(periodic, len(lengths)))
+    return _Box(lengths, flags), {"box": lengths, "periodic": flags}
 
 
 def tile(packing, repeats):
-    """A large specimen: a packing periodic in all directions repeated `repeats` (d,) times and settled between walls.
+    """A large specimen: a periodic packing repeated `repeats` (d,) times and relaxed between walls.
 
-    Repetition leaves no seam. At the outer walls particles are pushed in, and the packing relaxes until no particle's
-    unbalanced force is worth mentioning: the overlaps near the walls stay some 10 % above those inside. A tile of
-    3,800 discs repeated 5 x 5 times takes some 20 s. Returns a Packing with walls
-    all round and the porosity of the tile. Raises ParameterError for a packing that is not
-    periodic in all directions and repeats that are not positive integers.
+    Repetition leaves no seam. The outer walls push particles in, and the packing is relaxed until the unbalanced forces
+    are below TILE_TOLERANCE times the mean overlap: the overlaps near the walls stay some 10 % above those inside. A
+    tile of 3,800 discs repeated 5 x 5 times takes some 20 s. Returns a Packing with walls on all sides and the porosity
+    of the tile. Raises ParameterError for a packing that is not periodic in all directions and repeats that are not
+    positive integers.
     """
     require(packing.box is not None and all(packing.periodic), "packing", f"periodic: {packing.periodic}",
             "periodic in all directions")
     counts = np.asarray(repeats)
     require(counts.shape == (len(packing.box),) and counts.dtype.kind in "iu" and (counts > 0).all(),
-            "repeats", repeats, "one positive integer a direction")
+            "repeats", repeats, "one positive integer for each direction")
     corners = np.indices(repeats).reshape(len(repeats), -1).T * packing.box
     positions = (packing.positions + corners[:, None, :]).reshape(-1, len(repeats))
     radii, scale = np.tile(packing.radii, len(corners)), np.tile(packing.scale, len(corners))
     box, periodic = tuple(k * side for k, side in zip(repeats, packing.box)), (False,) * len(repeats)
-    positions, imbalance = _relax(_Box(box, periodic), positions, radii, SETTLING * mean_overlap(packing))
+    positions, imbalance = _relax(_Box(box, periodic), positions, radii, TILE_TOLERANCE * mean_overlap(packing))
     return Packing(positions, radii, scale, imbalance, box=box, periodic=periodic)

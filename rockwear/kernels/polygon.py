@@ -1,6 +1,6 @@
-"""Polygons in the plane: area, perimeter, signed distance, and the outlines of cutting teeth.
+"""Polygons in the plane: area, perimeter, signed distance, and profiles of cutting teeth.
 
-A polygon is an array (k, 2) of vertices in m, in order, the last joined to the first. It is simple: no two edges
+A polygon is an array (k, 2) of vertices in m, in order, the last connected with the first. It is simple: no two edges
 meet except neighbours at their common vertex.
 """
 import csv
@@ -12,9 +12,9 @@ from scipy.spatial import cKDTree
 from rockwear.kernels.checks import ParameterError, finite, not_negative, positive, require
 
 ARC_CHORD_ERROR = 1e-3  # sagitta of the chords that replace an arc, as a fraction of its radius
-CORNER = math.radians(10)  # a boundary that turns by more at one vertex has a corner there
-MOST_CORNERS = 4000  # of a file: each of its edges is held against each other
-CHUNK = 2_000_000  # point-edge pairs looked at together: some 100 MB of temporaries
+CORNER = math.radians(10)  # a vertex at which the direction changes by more is a corner
+MAX_VERTICES = 4000  # of a file: the test for simple polygons compares all pairs of edges
+CHUNK = 2_000_000  # point-edge pairs processed together: some 100 MB of temporaries
 
 
 def _cross(a, b):
@@ -23,13 +23,13 @@ def _cross(a, b):
 
 def signed_area(polygon):
     """Area (m2) by the shoelace formula, ½ Σ (x_i y_{i+1} − x_{i+1} y_i): positive for counter-clockwise vertices."""
-    # relative to one vertex, so that a small polygon far from the origin keeps its digits
+    # relative to one vertex: no loss of digits for a small polygon far from the origin
     p = np.asarray(polygon, dtype=float) - np.asarray(polygon, dtype=float)[0]
     return 0.5 * float(_cross(p, np.roll(p, -1, axis=0)).sum())
 
 
 def area(polygon):
-    """Enclosed area in m2, whatever the orientation."""
+    """Enclosed area in m2, for either orientation."""
     return abs(signed_area(polygon))
 
 
@@ -43,7 +43,7 @@ def is_simple(polygon):
     """Whether no two edges of the polygon meet, except neighbours at their common vertex.
 
     Edges P→P+d and Q→Q+e that are not parallel meet where P + s d = Q + t e, s, t in [0, 1]; parallel ones where they
-    lie on one line and their spans overlap. Every pair of edges is looked at.
+    lie on one line and overlap. All pairs of edges are compared.
     """
     p = np.asarray(polygon, dtype=float)
     k = len(p)
@@ -64,7 +64,7 @@ def is_simple(polygon):
     overlap = np.minimum(1.0, np.maximum(along, along + reach)) - np.maximum(0.0, np.minimum(along, along + reach))
     collinear = parallel & (np.abs(_cross(d[i], gap)) <= tiny * length[i] * (length[i] + np.linalg.norm(gap, axis=1)))
     neighbours = (j == i + 1) | ((i == 0) & (j == k - 1))
-    # neighbours share one point by right; they are at fault only when one folds back along the other
+    # neighbours share one point; they must not overlap
     touching = crossing | (collinear & (overlap >= -tiny))
     folded = collinear & (overlap > tiny)
     return not bool(np.where(neighbours, folded, touching).any())
@@ -73,8 +73,8 @@ def is_simple(polygon):
 def check_polygon(polygon, name="polygon"):
     """`polygon` as a counter-clockwise float array (k, 2).
 
-    Raises ParameterError (under `name`) unless it has at least 3 vertices, all finite, and is simple. A last vertex
-    that repeats the first is dropped.
+    A last vertex equal to the first is removed. Raises ParameterError (under `name`) unless the polygon has at least 3
+    vertices, all finite, and is simple.
     """
     try:
         p = np.array(polygon, dtype=float)
@@ -95,7 +95,7 @@ def _chunks(points, edges):
 
 
 def sides(polygon):
-    """Runs of edges between the corners of a polygon: [(start (e, 2), edge (e, 2))] in m; one run without a corner."""
+    """Sides of a polygon (k, 2) m, the edges between two corners: [(start (e, 2), edge (e, 2))]; one if no corners."""
     p = np.asarray(polygon, dtype=float)
     edge = np.roll(p, -1, axis=0) - p
     heading = np.arctan2(edge[:, 1], edge[:, 0])
@@ -107,7 +107,7 @@ def sides(polygon):
 
 
 def nearest_on_edges(points, start, edge):
-    """Nearest point (n, 2) on the segments start → start + edge (k, 2), and the segment (n,) it lies on."""
+    """Nearest points (n, 2) on the segments start → start + edge (k, 2) to points (n, 2) in m; their segments (n,)."""
     squared = (edge * edge).sum(1)
     foot, segment = np.empty_like(points), np.empty(len(points), dtype=np.intp)
     for chunk in _chunks(points, len(start)):
@@ -121,16 +121,16 @@ def nearest_on_edges(points, start, edge):
 
 
 def inside(points, polygon):
-    """Whether points (n, 2) lie in the polygon, by the even-odd crossing rule."""
+    """(n,) bool, whether points (n, 2) are inside the polygon (k, 2), by the even-odd rule."""
     start = np.asarray(polygon, dtype=float)
     edge = np.roll(start, -1, axis=0) - start
-    # a horizontal edge is never straddled, so its slope is never used
+    # the slope of a horizontal edge is not used: no point is between its ends in y
     slope = edge[:, 0] / np.where(edge[:, 1] == 0, 1.0, edge[:, 1])
     within = np.empty(len(points), dtype=bool)
     for chunk in _chunks(points, len(start)):
         rx, ry = points[chunk, :1] - start[:, 0], points[chunk, 1:] - start[:, 1]
-        straddled = (ry >= 0) != (ry - edge[:, 1] >= 0)
-        within[chunk] = (straddled & (rx < ry * slope)).sum(1) % 2 == 1
+        between = (ry >= 0) != (ry - edge[:, 1] >= 0)
+        within[chunk] = (between & (rx < ry * slope)).sum(1) % 2 == 1
     return within
 
 
@@ -153,25 +153,26 @@ def nearest(points, polygon):
 
 
 def signed_distance(points, polygon):
-    """Distance (n,) in m of points (n, 2) from the polygon's boundary: negative inside, positive outside."""
+    """Distance (n,) in m of points (n, 2) m from a polygon (k, 2) m: negative inside. Raises as check_polygon."""
     return nearest(points, check_polygon(polygon))[0]
 
 
 def tooth(*, height, width, rake, clearance, tip_radius):
-    """Outline of a cutting tooth that moves in +x: vertices (k, 2) in m, counter-clockwise.
+    """Profile of a cutting tooth that moves in +x: vertices (k, 2) in m, counter-clockwise.
 
-    The rake face looks forward (+x) and leans back from the vertical by `rake` (rad, negative: leans forward). The
-    clearance face looks down and rises backwards (−x) from the horizontal by `clearance` (rad, at least 0). They meet
-    in a tip rounded by `tip_radius` (m, 0 for a sharp one), whose circle touches the lines x = 0 and y = 0: the lowest
-    point of the tooth is at y = 0, x = −tip_radius, and the foremost point of the tip at x = 0 unless `rake` is
-    negative. The top is horizontal at y = `height` (m) and `width` (m) long; the back is vertical.
+    The rake face is in front (+x), inclined backwards from the vertical by the rake angle `rake` (rad; negative:
+    forwards). The clearance face is below and rises backwards (−x) from the horizontal by the clearance angle
+    `clearance` (rad, at least 0). Both are tangent to the tip circle of radius `tip_radius` (m, 0: sharp), which
+    touches the lines x = 0 and y = 0: the lowest point of the tooth is at y = 0, x = −tip_radius, and the foremost
+    point of the tip at x = 0 unless `rake` is negative. The top is horizontal at y = `height` (m) and `width` (m) long;
+    the back is vertical.
 
-    The wedge angle is β = π/2 − rake − clearance. The faces leave the circle at tip_radius/tan(β/2) from the sharp
-    edge, so that rounding takes the area tip_radius² (1/tan(β/2) − (π − β)/2) off it; chords replace the arc with a
-    sagitta of at most ARC_CHORD_ERROR of its radius.
+    The wedge angle is β = π/2 − rake − clearance. The tangent points are at tip_radius/tan(β/2) from the sharp edge, so
+    that rounding removes the area tip_radius² (1/tan(β/2) − (π − β)/2). The arc is divided into chords with a sagitta
+    of at most ARC_CHORD_ERROR times its radius.
 
-    Raises ParameterError for lengths not positive, angles that leave no wedge, and a tip or a clearance face that has
-    no room between top, back and rake face.
+    Raises ParameterError for lengths that are not positive, angles that leave no wedge, and a tip circle or a clearance
+    face that does not fit between top, back and rake face.
     """
     height, width = positive("height", height, "m"), positive("width", width, "m")
     rake, clearance = finite("rake", rake, "rad"), not_negative("clearance", clearance, "rad")
@@ -179,9 +180,10 @@ def tooth(*, height, width, rake, clearance, tip_radius):
     require(abs(rake) < math.pi / 2, "rake", rake, "between -90 and 90 degrees, both excluded", "rad")
     require(clearance < math.pi / 2, "clearance", clearance, "less than 90 degrees", "rad")
     wedge = math.pi / 2 - rake - clearance
-    require(wedge > 0, "rake", rake, f"less than 90 degrees less the clearance, {90 - math.degrees(clearance):g}", "rad")
+    require(wedge > 0, "rake", rake, f"less than 90 degrees minus the clearance, {90 - math.degrees(clearance):g}",
+            "rad")
 
-    # outward normals of the two faces; the arc turns from one to the other
+    # directions of the outward normals of the two faces, between which the arc extends
     first, last = -math.pi / 2 - clearance, rake
     pieces = max(1, math.ceil((last - first) / (2 * math.acos(1 - ARC_CHORD_ERROR)))) if tip_radius > 0 else 0
     turn = np.linspace(first, last, pieces + 1)
@@ -200,7 +202,7 @@ def read_outline(path):
     """Polygon (k, 2) in m from a CSV file of x, y rows, counter-clockwise whatever the file's order.
 
     One header line is allowed; blank lines and lines that begin with # are skipped. Raises ParameterError (outline)
-    for a file that cannot be read, a row that is not two numbers, and what check_polygon rejects.
+    for a file that cannot be read, a row that is not two numbers, more than MAX_VERTICES, and as check_polygon.
     """
     try:
         with open(path, newline="", encoding="utf-8-sig") as stream:
@@ -217,7 +219,7 @@ def read_outline(path):
                 continue
             raise ParameterError("outline", path, f"two numbers a row, unlike line {line}: {','.join(row)}") from None
         vertices.append((x, y))
-    require(len(vertices) <= MOST_CORNERS, "outline", f"{path}, {len(vertices)} vertices", f"of at most {MOST_CORNERS}")
+    require(len(vertices) <= MAX_VERTICES, "outline", f"{path}, {len(vertices)} vertices", f"of at most {MAX_VERTICES}")
     try:
         return check_polygon(np.reshape(vertices, (-1, 2)), "outline")
     except ParameterError as error:
@@ -231,12 +233,15 @@ def tip(vertices):
 
 
 def nearest_arc(points, along, arc):
-    """(m,) m, arc length of the point of a contour (`along`, `arc`: see `contour`) that is nearest to each point (m, 2)."""
+    """(m,) m, arc length of the contour point nearest to each point (m, 2) m; along, arc: from `contour`."""
     return arc[cKDTree(along).query(points)[1]]
 
 
 def contour(outline, spacing):
-    """Points along a polygon and their arc length (m) from its lowest point: positive up the front, at greater x."""
+    """Points (n, 2) m every `spacing` m along a polygon (k, 2) m, and their arc length (n,) m from its lowest vertex.
+
+    The arc length is positive up the front (greater x) and negative along the clearance face; ascending.
+    """
     x, y = outline.T
     if np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)) < 0:
         outline = outline[::-1]

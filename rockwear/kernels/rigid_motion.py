@@ -1,6 +1,7 @@
-"""Rigid motions of a tool in the plane, as exact functions of time: a straight cut, and a swinging cutter head.
+"""Rigid motions of a tool in the plane as functions of time: a straight cut, and a rotating and swinging cutter head.
 
-A motion has pose(t) -> Pose; velocity(t) -> (2,) m/s of the origin of the body's own frame, t in s; and `angular_velocity`, rad/s.
+A motion has pose(t) -> Pose and velocity(t) -> (2,) m/s of the origin of the body frame, t in s, and `angular_velocity`
+in rad/s, positive counter-clockwise.
 """
 import math
 from dataclasses import dataclass
@@ -10,24 +11,24 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Pose:
-    """Where a rigid body is: x = offset + R(turn) X, X (m) in the body's own frame; offset (2,) m, turn rad."""
+    """Position of a rigid body, x = offset + R(turn) X with X (m) in the body frame; offset: (2,) m; turn: rad."""
 
     offset: np.ndarray
     turn: float = 0.0
 
     @property
     def rotation(self):
-        """(2, 2) matrix R of the turn, counter-clockwise."""
+        """(2, 2) rotation matrix R, counter-clockwise."""
         c, s = math.cos(self.turn), math.sin(self.turn)
         return np.array([[c, -s], [s, c]])
 
     def of(self, points):
-        """Places (n, 2) m of points of the body, given in its own frame."""
+        """Positions (n, 2) m of points (n, 2) m given in the body frame."""
         return np.asarray(points, float) @ self.rotation.T + self.offset
 
 
 class Straight:
-    """x(t) = start + v t. start: (2,) m; velocity: (2,) m/s."""
+    """Translation x(t) = start + v t. start: (2,) m; velocity v: (2,) m/s."""
 
     angular_velocity = 0.0
 
@@ -35,22 +36,24 @@ class Straight:
         self.start, self.constant = np.asarray(start, float), np.asarray(velocity, float)
 
     def pose(self, t):
+        """Pose at the time t (s)."""
         return Pose(self.start + self.constant * t)
 
     def velocity(self, t):
+        """(2,) m/s of the origin of the body frame."""
         return self.constant
 
 
 class SwingAndRotation:
-    """A pick on a cutter head that turns about a centre, which swings along a straight line (P 5.1, fig. 8).
+    """A pick on a cutter head that rotates about a centre in straight motion [Rojek 2014, sec. 5.1, fig. 8].
 
         c(t) = c0 + u t,   turn(t) = a + w t,   x(t) = c(t) + R(turn) (X - C)
 
-    C is the centre as the pick sees it. A point at the distance R from the centre runs through a trochoid (P: a
-    cycloid) at the circumferential velocity w R, to which the swing adds.
+    A point at the distance R from the centre describes a trochoid (in [Rojek 2014]: a cycloid) at the circumferential
+    velocity w R plus the swing velocity.
 
     centre: c0, (2,) m; swing: u, (2,) m/s; angular_velocity: w, rad/s, positive counter-clockwise; start: a, rad;
-    pivot: C, (2,) m in the pick's own frame.
+    pivot: C, the centre in the body frame of the pick, (2,) m.
     """
 
     def __init__(self, *, centre, swing, angular_velocity, pivot, start=0.0):
@@ -58,9 +61,11 @@ class SwingAndRotation:
         self.angular_velocity, self.start = angular_velocity, start
 
     def pose(self, t):
+        """Pose at the time t (s)."""
         centre, turned = self.centre + self.swing * t, Pose(np.zeros(2), self.start + self.angular_velocity * t)
         return Pose(centre - turned.of([self.pivot])[0], turned.turn)
 
     def velocity(self, t):
+        """(2,) m/s of the origin of the body frame at the time t (s)."""
         x, y = self.pose(t).offset - self.centre - self.swing * t
         return self.swing + self.angular_velocity * np.array([-y, x])

@@ -1,4 +1,4 @@
-"""The critical time step of the central difference (leapfrog) scheme for a bonded assembly, from its stiffness."""
+"""Critical time step of the central difference (leapfrog) scheme for a bonded assembly, from its stiffness matrix."""
 import math
 
 import numpy as np
@@ -13,47 +13,46 @@ TOLERANCE = 1e-6  # of the largest eigenvalue; the time step is made smaller by 
 
 def critical_time_step(*, positions, radii, masses, inertias, bonds, kn, kt, fixed=(), damping_ratio=0.0, ground=None,
                        cn=0.0, ratcheting_free=False):
-    """Largest stable time step in s, 2/Ω_max (√(1 + ξ²) − ξ): M (3.36–3.37).
+    """Largest stable time step in s, 2/Ω_max (√(1 + ξ²) − ξ) [Rojek 2003, eq. 3.36-3.37].
 
     Ω_max² is the largest eigenvalue of M^-½ K M^-½. K = Σ kn n nᵀ + kt t tᵀ, with the rotations: a bond from i to j
     with unit normal n is stretched by n·(u_j − u_i) and sheared in a direction t by
 
         t·(u_j − u_i) − (n × t)·(a_i φ_i + a_j φ_j),    a = r − ½ (r_i + r_j − |x_j − x_i|)
 
-    where the arms a reach to the middle of the overlap, or of the gap, as in YADE. Mass is lumped: 3 degrees of
-    freedom a disc, 6 a sphere.
+    with the lever arms a from the centres to the middle of the overlap or gap, as in YADE. Mass is lumped: 3 degrees of
+    freedom for a disc, 6 for a sphere.
 
     positions  (n, 2) or (n, 3) in m        radii    (n,) in m
     masses     (n,) in kg                   inertias (n,) in kg m2
     bonds      (m, 2) indices of particles
     kn, kt     normal and tangential stiffness in N/m, one for all bonds or (m,)
     fixed      indices of particles that do not move
-    damping_ratio    ξ, fraction of critical damping at Ω_max: for an assembly damped alike in all its modes
+    damping_ratio    ξ, fraction of critical damping at Ω_max, for an assembly with equal damping of all modes
     cn         normal dashpots of the bonds in N s/m, one for all bonds or (m,); see below
-    ratcheting_free    True for contacts whose shear is measured free of ratcheting, as YADE does unless told otherwise
+    ratcheting_free    True for YADE's default measure of the shear displacement
                (Ig2_Sphere_Sphere_ScGeom.avoidGranularRatcheting); see below
-    ground     (nodes, normals, kn, kt) or (nodes, normals, kn, kt, cn): contacts of particles `nodes` (g,) with a rigid
-               body that does not yield, such as the tool, in the directions `normals` (g, d) at one radius from the
-               centre. Where the tool may touch any particle, give all of them at once, in a few directions in turn,
-               and take the least step: for 2,100 discs with kn = 20e9 under a tool of 90e9 N/m this cost 4 % of the
-               step against the worst single contact.
+    ground     (nodes, normals, kn, kt) or (nodes, normals, kn, kt, cn): contacts of particles `nodes` (g,) with a body
+               of prescribed motion, such as the tool, in the directions `normals` (g, d) at one radius from the
+               centre. If the tool may touch any particle, give all of them at once, for a few directions one after
+               the other, and use the least step: for 2,100 discs with kn = 20e9 under a tool of 90e9 N/m that step was
+               4 % below that of the worst single contact.
 
-    Dashpots. YADE's laws see the velocity of half a step ago, M (v⁺ − v⁻)/Δt = −K x − C v⁻, so that a mode of the form
-    (−1)ᵏ grows as soon as
+    Dashpots. YADE's laws use the velocity of half a step before, M (v⁺ − v⁻)/Δt = −K x − C v⁻, so that a mode of the
+    form (−1)ᵏ grows as soon as
 
         4 M − Δt² K − 2 Δt C     (C = Σ cn n nᵀ)
 
-    is no longer positive definite; up to there every Rayleigh quotient of the scheme's matrices is that of a stable
-    oscillator. The step returned is where it ceases to be: a dashpot costs as much as a spring of 2 cn/Δt. For a single
-    mode that is the formula above, for contacts with and without dashpots the exact answer in its place.
+    is not positive definite. The returned step is this limit: a dashpot acts like a spring of 2 cn/Δt. For a single
+    mode it equals the formula above; for assemblies with and without dashpots it is exact and replaces it.
 
-    Ratcheting. YADE turns the particles about their full radii and scales the translations up to match, by
+    Ratcheting. YADE takes the rotations at the full radii and multiplies the translations by
     α = (r_i + r_j)/|x_j − x_i|: the shear increment is α t·(u_j − u_i) − (n × t)·(r_i φ_i + r_j φ_j), while the force
-    acts at the arms a above. Bonds of overlapping particles are α times as stiff in shear, and K is no longer
-    symmetric where the radii differ. With √(a r/α) as the arm of either particle it is, and Ω_max is that of the
+    acts at the lever arms a above. Bonds of overlapping particles are α times as stiff in shear, and K is not symmetric
+    where the radii differ. With √(a r/α) as the lever arm of either particle it is, and Ω_max is that of the
     unsymmetric K within 1e-4 (radii 1 to 6 mm, overlaps up to 17 %).
 
-    Returns math.inf where nothing resists motion. The eigenvalue is exact to TOLERANCE, on the safe side. Raises
+    Returns math.inf if no motion is resisted. The eigenvalue has the relative error TOLERANCE, on the safe side. Raises
     ParameterError (named as the arguments) for shapes that do not match, values that are not finite, masses, inertias
     or radii not positive, negative stiffness, and bonds between coincident or unknown particles.
     """
@@ -83,8 +82,8 @@ def critical_time_step(*, positions, radii, masses, inertias, bonds, kn, kt, fix
         grounded = _ground_rows(ground, r, d)
         springs, dashpots = sparse.vstack([springs, grounded[0]]), sparse.vstack([dashpots, grounded[1]])
 
-    angular_velocity = springs.shape[1] // n - d
-    scale = np.hstack([np.tile(1 / np.sqrt(mass)[:, None], d), np.tile(1 / np.sqrt(inertia)[:, None], angular_velocity)])
+    rotations = springs.shape[1] // n - d
+    scale = np.hstack([np.tile(1 / np.sqrt(mass)[:, None], d), np.tile(1 / np.sqrt(inertia)[:, None], rotations)])
     scale[fixed] = 0.0  # an infinite mass
     springs, dashpots = ((rows @ sparse.diags(scale.ravel())).tocsr() for rows in (springs, dashpots))
     step = _undamped_step(springs) if not dashpots.data.any() else _damped_step(springs, dashpots)
@@ -100,8 +99,8 @@ def _undamped_step(springs):
 def _damped_step(springs, dashpots):
     """Least Δt for which Δt² K + 2 Δt C, both scaled by M^-½, has an eigenvalue 4.
 
-    A vector v gives the root of the quadratic Δt² vᵀKv + 2 Δt vᵀCv = 4, an upper bound. The eigenvector at one bound
-    gives the next: this is Newton's method, from above.
+    Any vector v gives an upper bound, the root of Δt² vᵀKv + 2 Δt vᵀCv = 4. The eigenvector at one bound gives the
+    next: Newton's method, from above.
     """
     stiffness, viscosity = (springs.T @ springs).tocsr(), (dashpots.T @ dashpots).tocsr()
     step, last = min(_undamped_step(springs), 2 / _largest_eigenvalue(viscosity)[0]), math.inf
@@ -120,15 +119,15 @@ def _rows(n, i, j, normal, arm_i, arm_j, kn, kt):
         tangents = [np.column_stack([-normal[:, 1], normal[:, 0]])]
         turns = [np.ones((m, 1))]  # n × t is the unit vector out of the plane
     else:
-        # any direction that is not the normal: the axis it is farthest from
+        # any direction but the normal: the axis with its smallest component
         helper = np.eye(3)[np.abs(normal).argmin(1)]
         first = np.cross(normal, helper)
         first /= np.linalg.norm(first, axis=1)[:, None]
         tangents = [first, np.cross(normal, first)]
         turns = [np.cross(normal, t) for t in tangents]
-    angular_velocity = turns[0].shape[1]
-    dofs = d + angular_velocity
-    directions = [(kn, normal, np.zeros((m, angular_velocity)))] + [(kt, t, turn) for t, turn in zip(tangents, turns)]
+    rotations = turns[0].shape[1]
+    dofs = d + rotations
+    directions = [(kn, normal, np.zeros((m, rotations)))] + [(kt, t, turn) for t, turn in zip(tangents, turns)]
     entries = np.stack([np.sqrt(k)[:, None] * np.hstack([-t, -arm_i[:, None] * turn, t, -arm_j[:, None] * turn])
                         for k, t, turn in directions], axis=1)
     columns = np.hstack([i[:, None] * dofs + np.arange(dofs), j[:, None] * dofs + np.arange(dofs)])
@@ -145,7 +144,7 @@ def _dashpot_rows(n, i, j, normal, cn):
 
 
 def _ground_rows(ground, r, d):
-    """Rows of springs and of dashpots with a body that does not move: bonds to a particle left out of the matrix."""
+    """Rows of springs and of dashpots to a body of prescribed motion: bonds to a particle outside the matrix."""
     nodes, normals, kn, kt, cn = ground if len(ground) == 5 else (*ground, 0.0)
     nodes, n = _indices("ground", nodes, len(r)), len(r)
     normals = np.asarray(normals, dtype=float)

@@ -1,45 +1,45 @@
-"""How far accelerated wear can be trusted: R's two rules, judged from one run's own record.
+"""Reliability of accelerated wear: the two rules of [Rocky], evaluated from the record of one run.
 
-Wear that is accelerated f times in a run of T seconds stands for f T seconds of work. R asks two things of f: scaling f
-up and T down by the same factor must leave the wear where it was, and T must stay long against single contact events.
-Both are questions of statistics: how well T seconds sample where the tool wears, and over how many contacts a layer of
-the tool goes.
+Wear accelerated f times in a run of T seconds represents f T seconds of cutting. [Rocky, sec. 2.5] has two rules for f:
+the wear must not change if f is multiplied and T divided by the same factor, and T must be long against single contact
+events. Both are statistical: how well T seconds sample the distribution of wear over the tool, and in how many contact
+events a layer of the tool is worn off.
 """
 import numpy as np
 
 from rockwear.kernels.polygon import contour, nearest_arc
 
 MIN_BLOCKS = 8
-"""Fewer blocks of a record tell nothing of its scatter."""
+"""Least number of blocks of a record from which its scatter is estimated."""
 PLACE = 2e-3
-"""Length (m) along a tool's outline that counts as one place where wear may happen."""
+"""Length (m) along the profile of a tool over which wear is summed."""
 ENOUGH_EVENTS = 10
-"""Contact events over which a particle should wear away, so that no single one shapes the tool."""
+"""Least number of contact events in which a particle should be worn away: no single event determines the shape."""
 
 
 def places(outline, points):
-    """(m,) number of the place, PLACE long, along an outline (k, 2) m that each of the points (m, 2) is nearest to."""
+    """(m,) int, number of the place, PLACE long, of a profile (k, 2) m nearest to each of the points (m, 2) m."""
     along, arc = contour(outline, PLACE / 10)
     return np.floor((nearest_arc(points, along, arc) - arc[0]) / PLACE).astype(int)
 
 
 def middles(outline, count):
-    """(count,) m along an outline (k, 2) m, from its tip, to the middles of its places."""
+    """(count,) m, arc length from the tip of a profile (k, 2) m to the middles of its places."""
     return contour(outline, PLACE / 10)[1][0] + (np.arange(count) + 0.5) * PLACE
 
 
 def distribution_error(increments):
-    """Expected relative error of a wear distribution that was sampled in one run, by batch means.
+    """Expected relative error (-) of a wear distribution sampled in one run, by batch means. (Ours.)
 
-    increments: (t, b) worn volume (m3) of each of b places along the tool in each of t equal spans of time. With the
-    record cut into n blocks of sums X_kb, totals w_b, W = sum w_b and the shares p_b = w_b / W, the variance of w_b at
-    a given worn volume W is n / (n - 1) sum_k (X_kb - p_b X_k)^2 (ratio estimator), and the error is
+    increments: (t, b) m3, worn volume of each of b places along the tool in each of t equal intervals of time. For n
+    blocks with the sums X_kb, totals w_b, W = sum w_b and shares p_b = w_b / W, the variance of w_b at a given W is
+    n / (n - 1) sum_k (X_kb - p_b X_k)^2 (ratio estimator), and the error is
 
         sum_b sqrt(2 / pi var_b) / W,
 
-    the mean absolute deviation of a normal variable, summed over the places. Contacts come in bursts, so the blocks grow
-    from one span until MIN_BLOCKS are left, and the largest error counts. -> float; it falls with 1 / sqrt(T); nan where
-    there is no wear or no MIN_BLOCKS spans.
+    the mean absolute deviation of a normal variable, summed over the places. As contact events are correlated, blocks
+    of 1, 2, 4, ... intervals are used while MIN_BLOCKS remain, and the largest error is returned. It decreases with
+    1 / sqrt(T); nan without wear and with fewer than MIN_BLOCKS intervals.
     """
     total = np.sum(increments, axis=0)
     deviation = distribution_deviation(increments)
@@ -47,7 +47,7 @@ def distribution_error(increments):
 
 
 def distribution_deviation(increments):
-    """Standard error (b,) m3 of the wear at each place, given the worn volume; see distribution_error. None without one."""
+    """Standard error (b,) m3 of the wear at each place at a given worn volume, or None; see distribution_error."""
     increments = np.asarray(increments, float)
     total = increments.sum(axis=0)
     if len(increments) < MIN_BLOCKS or not total.sum() > 0:
@@ -63,10 +63,10 @@ def distribution_deviation(increments):
 
 
 def events_per_particle(*, events, worn, limit):
-    """Contact events over which a particle wears away: the median over the worn volume of events * limit / worn.
+    """Contact events (-) in which a particle is worn away: median, weighted by worn volume, of events * limit / worn.
 
-    events: (m,) contact events in which each particle was worn; worn: (m,) m3 worn off it, whatever it had to give;
-    limit: (m,) m3 at which it goes. -> float, nan without wear.
+    events: (m,) contact events in which each particle was worn; worn: (m,) m3 worn off it, which may exceed its own
+    volume; limit: (m,) m3 at which it is removed. nan without wear.
     """
     touched = np.flatnonzero((np.asarray(worn) > 0) & (np.asarray(events) > 0))
     if not len(touched):
@@ -78,17 +78,18 @@ def events_per_particle(*, events, worn, limit):
 
 
 def trusted_wear_acceleration(*, wear_acceleration, error, events, tolerance):
-    """Largest factor at which the same worn volume would have kept both of R's rules.
+    """Largest wear acceleration (-) at which the same worn volume would have satisfied both rules of [Rocky, sec. 2.5].
 
-    A factor f' wears the same volume in f / f' of the time: the error of the distribution becomes error sqrt(f' / f),
-    and a particle goes in events f / f' contacts. -> f min((tolerance / error)^2, events / ENOUGH_EVENTS), of what is
-    known of the two; nan where the record says nothing.
+    A factor f' wears the same volume in the time f / f': the error of the distribution becomes error sqrt(f' / f), and
+    a particle is worn away in events f / f' contacts: f' = f min((tolerance / error)^2, events / ENOUGH_EVENTS).
+    wear_acceleration f; error: of distribution_error; events: of events_per_particle; tolerance: of the error. A nan of
+    error or events is ignored; nan if both are.
     """
     with np.errstate(divide="ignore"):
         return wear_acceleration * float(np.fmin((tolerance / np.float64(error)) ** 2, events / ENOUGH_EVENTS))
 
 
 def difference(first, second):
-    """Relative difference of two wear distributions (b,) m3 whatever their totals: sum |p - q| of their shares, 0 to 2."""
+    """Difference (-, 0 to 2) of two wear distributions (b,) m3: sum |p - q| over their shares of the totals."""
     first, second = np.asarray(first, float), np.asarray(second, float)
     return float(np.abs(first / first.sum() - second / second.sum()).sum())

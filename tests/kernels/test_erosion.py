@@ -123,7 +123,7 @@ def test_a_body_worn_away_loses_no_volume_of_the_book():
     body.wear(np.array([10 * 4 * R * R, 0]))
     assert not body.alive.any() and not body.surface
     balance = body.volume_balance()
-    assert balance["beyond_the_body"] == pytest.approx(8 * 4 * R * R)
+    assert balance["unassigned"] == pytest.approx(8 * 4 * R * R)
     assert abs(balance["unexplained"]) < 1e-12 * balance["archard"]
 
 
