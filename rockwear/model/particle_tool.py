@@ -11,7 +11,7 @@ from rockwear.kernels.erosion import Erosion
 from rockwear.model.cache import cached
 
 POROSITY = 0.13
-"""Of the packing that fills the outline (P 5.2). Its mass and volume are those of the outline."""
+"""Of the packing that fills the outline [Rojek 2014, 5.2]. Its mass and volume are those of the outline."""
 NEIGHBOUR_GAP = 0.2
 """Particles whose gap is below this part of the mean radius are joined by a bar, where bars conduct."""
 NEAREST = 3

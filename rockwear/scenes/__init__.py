@@ -1,1 +1,1 @@
-"""Scenes: what is put into YADE, from parts, and led through its stages."""
+"""Scenes: staged simulations in YADE, put together from parts."""

@@ -1,7 +1,8 @@
-"""The three heat benchmarks of M 7.6 on packings of discs, beside their exact solutions; heat only.
+"""The three heat benchmarks of [Rojek 2003, 7.6] on packings of discs, beside their exact solutions; heat only.
 
-M takes them from a finite element program's manual and shows figures that cannot be read here: the exact solutions
-(kernels.analytic) stand for them, at M's instants. The numbers are M's, in his one consistent set of units.
+The source takes them from a finite element program's manual and shows figures that cannot be read here: the exact
+solutions (kernels.analytic) stand for them, at the source's instants. The numbers are the source's, in one consistent
+set of units.
 """
 from collections import namedtuple
 from types import SimpleNamespace
@@ -29,13 +30,13 @@ Benchmark = namedtuple("Benchmark", "title depth material load instants")
 """Depth (m) that is modelled, its material, the load of its exact solution, and the instants (s) of its profiles."""
 
 BENCHMARKS = {
-    "slab_source": Benchmark("heat generated in a slab between cold faces (M 7.6.1)", 8.0,
+    "slab_source": Benchmark("heat generated in a slab between cold faces [Rojek 2003, 7.6.1]", 8.0,
                              dict(conductivity=16.0, density=1.0, specific_heat=1.0), 2000.0, (0.08, 0.16, 0.24, 0.32)),
-    # At t = 1 heat has come 6 deep to a part of 1e-5 only. M names the last instant.
-    "half_space": Benchmark("half-space under unit flux (M 7.6.2)", 6.0,
+    # At t = 1 heat has come 6 deep to a part of 1e-5 only. the source names the last instant.
+    "half_space": Benchmark("half-space under unit flux [Rojek 2003, 7.6.2]", 6.0,
                             dict(conductivity=1.0, density=1.0, specific_heat=1.0), 1.0, (0.25, 0.5, 1.0)),
-    # M names the last instant.
-    "jump": Benchmark("slab whose faces jump to 100 (M 7.6.3)", 1.0,
+    # the source names the last instant.
+    "jump": Benchmark("slab whose faces jump to 100 [Rojek 2003, 7.6.3]", 1.0,
                       dict(conductivity=6.0, density=3.0, specific_heat=2.0), 100.0, (0.025, 0.05, 0.075)),
 }
 PACKINGS = "random", "square", "triangular"
@@ -149,7 +150,7 @@ class HeatBenchmarks(Scene):
     # ---- YADE
 
     def build(self):
-        """Fill YADE's scene with the discs and bonds of the present case, and hang in its heat."""
+        """Fill YADE's scene with the discs and bonds of the present case, and insert its heat engine."""
         O.reset()
         yade_scene.put_rock_materials(mu=0.0)
         yade_scene.put_rock(self.rock)
@@ -258,7 +259,7 @@ class BenchmarkOutput(Output):
         return {"errors.csv": ([f"{name} [{'s' if name == 'instant' else '-'}]" for name in header], rows)}
 
     def balances(self):
-        """The heat book, sum of all cases: generated, through the faces, stored, and what does not add up."""
+        """The heat balance, sum of all cases: generated, through the faces, stored, and what does not add up."""
         generated, through, residual = self.scene.case_balances.sum(axis=0)
         return {"heat": ({"generated": generated, "through_faces": through, "stored": generated + through + residual,
                           "residual": residual}, "-")}

@@ -6,6 +6,7 @@ from rockwear.kernels.parameter import (
     Group, Parameter, above_zero, choice, density, duration, file, flag, integer, law_parameters, number, speed,
     stiffness)
 from rockwear.kernels.wear_laws import WEAR_LAWS
+from rockwear.model.materials import SANDSTONE, STEEL
 
 HARDNESS_TABLES = "MET71", "MET91"
 BY_TABLE = {"hardness": (0.0,)}
@@ -23,7 +24,7 @@ SPECIMEN = Group("rock", (
     Parameter("seed", 1, "", integer(0), "of the packings of rock and tool"),
     Parameter("grading_factor", 1.0, "", number(1, 8), "factor by which radii grow below fine_depth; 1: uniform rock"),
     Parameter("fine_depth", 0.035, "m", above_zero, "depth that keeps the fine particles"),
-    Parameter("rock_density", 2500.0, "kg/m3", density, "bulk density of the rock", "[Rojek 2003, 7.4]")))
+    Parameter("rock_density", SANDSTONE.density, "kg/m3", density, "bulk density of the rock", "[Rojek 2003, 7.4]")))
 
 BLOCK = Group("rock", (
     Parameter("width", 0.62, "m", above_zero, "length of the block, along the cut"),
@@ -36,7 +37,7 @@ BLOCK = Group("rock", (
               "factor on the radii of rock and tool; stiffnesses grow with it and "
               "strengths with its square, so that the rock keeps modulus and strength"),
     Parameter("full", False, "", flag, "the source's sizes: scale_factor counts as 1"),
-    Parameter("rock_density", 2500.0, "kg/m3", density, "bulk density of the rock", "[Rojek 2003, 7.4]"),
+    Parameter("rock_density", SANDSTONE.density, "kg/m3", density, "bulk density of the rock", "[Rojek 2003, 7.4]"),
     Parameter("gravity", 9.81, "m/s2", number(0), "downwards", "[Rojek 2003, 13.1]")))
 
 BONDS = Group("bonds", (
@@ -80,7 +81,7 @@ PLANE_TOOL = Group("tool", (
               "ours", {**OF_FACETS, "heat": (True,)}),
     Parameter("segment", 1e-3, "m", above_zero, "longest segment of the tool's outline", "ours", OF_FACETS),
     *SHAPE,
-    Parameter("tool_density", 7830.0, "kg/m3", density, "density of the tool", "[Rojek 2003, 7.4]")))
+    Parameter("tool_density", STEEL.density, "kg/m3", density, "density of the tool", "[Rojek 2003, 7.4]")))
 
 SPACE_TOOL = Group("tool", (
     Parameter("tool", "particles", "", choice("particles", "triangles"), "what the tool is made of",
@@ -101,7 +102,8 @@ SPACE_TOOL = Group("tool", (
               "size of the tool's triangles, halves of such squares; edges of an STL file longer "
               "than 1.5 times that are cut in halves", "ours", OF_FACETS),
     *SHAPE,
-    Parameter("tool_density", 7830.0, "kg/m3", density, "density of the tool", "[Rojek 2003, 7.4]"))).with_defaults(
+    Parameter("tool_density", STEEL.density, "kg/m3", density, "density of the tool",
+              "[Rojek 2003, 7.4]"))).with_defaults(
         tooth_height=0.14, tooth_width=0.0758, rake=30.0, clearance=20.0, reshape=False)
 
 CONTACT = Group("contact of tool and rock", (
@@ -169,12 +171,16 @@ BOND_CONDUCTANCE = Parameter(
     "centres, or half of it", "ours; ours; [Rojek 2014, eqs. 64-65]; [Rojek 2003, eq. 11.1]")
 HEAT = Group("heat", (
     Parameter("heat", True, "", flag, "heat, or a hardness at the tool's first temperature"),
-    Parameter("rock_specific_heat", 1970.0, "J/kgK", above_zero, "specific heat of the rock", "[Rojek 2003, 7.4]"),
-    Parameter("rock_conductivity", 5.0, "W/mK", above_zero, "conductivity of the rock", "[Rojek 2003, 11.1]"),
+    Parameter("rock_specific_heat", SANDSTONE.specific_heat, "J/kgK", above_zero, "specific heat of the rock",
+              "[Rojek 2003, 7.4]"),
+    Parameter("rock_conductivity", SANDSTONE.conductivity, "W/mK", above_zero, "conductivity of the rock",
+              "[Rojek 2003, 11.1]"),
     Parameter("rock_expansion", 0.0, "1/K", number(0), "linear thermal expansion of the rock; 0: none",
               "[Rojek 2014, 5.2]: 1e-5"),
-    Parameter("tool_specific_heat", 450.0, "J/kgK", above_zero, "specific heat of the tool", "[Rojek 2003, 7.4]"),
-    Parameter("tool_conductivity", 60.0, "W/mK", above_zero, "conductivity of the tool", "[Rojek 2003, 7.4]"),
+    Parameter("tool_specific_heat", STEEL.specific_heat, "J/kgK", above_zero, "specific heat of the tool",
+              "[Rojek 2003, 7.4]"),
+    Parameter("tool_conductivity", STEEL.conductivity, "W/mK", above_zero, "conductivity of the tool",
+              "[Rojek 2003, 7.4]"),
     Parameter("heat_fraction", 0.85, "", number(0, 1), "chi, the part of friction work that becomes heat",
               "[Rojek 2014, 5.2]"),
     Parameter("heat_sharing", "effusivity", "", choice("effusivity", "equal"), "of friction heat between tool and rock",
