@@ -71,12 +71,12 @@ def test_all_passes_take_the_same_heat_a_metre(passes):
     assert a_metre[0] > 10 and a_metre == pytest.approx([a_metre[0]] * 3, rel=1e-4)
 
 
-def test_slower_means_cooler_and_a_held_root_too(passes):
-    for kind in ("fixed_root", "insulated_root"):
+def test_slower_means_cooler_and_a_held_shank_too(passes):
+    for kind in ("fixed_shank", "insulated_shank"):
         rises = [value(passes, f"hottest_{kind}_{u}") - 293.15 for u in ("4", "0.4", "0.04")]
         assert rises[0] > 5 * rises[1] > 25 * rises[2] > 0
     for u in ("4", "0.4", "0.04"):
-        assert 293.15 < value(passes, f"hottest_fixed_root_{u}") < value(passes, f"hottest_insulated_root_{u}")
+        assert 293.15 < value(passes, f"hottest_fixed_shank_{u}") < value(passes, f"hottest_insulated_shank_{u}")
 
 
 def test_each_field_starts_its_own_wear_with_a_whole_tool(passes):
@@ -85,11 +85,11 @@ def test_each_field_starts_its_own_wear_with_a_whole_tool(passes):
     assert worn[stage <= 3].max() < 1e-20 and worn[stage == 4].max() > 1e-9
     assert worn[stage == 5].min() < worn[stage == 4].max()
     profile = np.loadtxt(passes.out / "wear_profile.csv", delimiter=",", skiprows=1)
-    last = value(passes, "worn_volume_from_insulated_root")
+    last = value(passes, "worn_volume_from_insulated_shank")
     assert profile.min() >= 0 and profile.sum() == pytest.approx(last, rel=0.2)
     for k, shank in ((4, "fixed"), (5, "insulated")):
-        assert hottest[stage == k][0] == pytest.approx(value(passes, f"hottest_{shank}_root_0.4"), abs=1.0)
-        assert value(passes, f"worn_volume_from_{shank}_root") == pytest.approx(worn[stage == k].max(), rel=0.2)
+        assert hottest[stage == k][0] == pytest.approx(value(passes, f"hottest_{shank}_shank_0.4"), abs=1.0)
+        assert value(passes, f"worn_volume_from_{shank}_shank") == pytest.approx(worn[stage == k].max(), rel=0.2)
     assert abs(passes.summary["balances"]["heat"]["residual"]) < 1e-8 * passes.summary["balances"]["heat"]["generated"]
 
 

@@ -24,6 +24,7 @@ from rockwear.kernels.bond_laws import ElasticBrittle, ElasticDamage, ElastoPlas
 from rockwear.kernels.conduction import HeatNetwork, effusivity, effusivity_share
 from rockwear.kernels.packing import contacts
 from rockwear.kernels.stability import critical_time_step
+from rockwear.model.contact import ContactLaw
 from rockwear.model.materials import SANDSTONE, STEEL
 from rockwear.model.rock import Specimen
 from rockwear.model.thermal_body import ParticleBody
@@ -31,6 +32,7 @@ from rockwear.model.thermal_body import ParticleBody
 KN, KT, MU, ALPHA, D = 20e9, 5e9, 0.5, 1e-5, 2e-3
 E = 2 * math.sqrt(3) * KN * (KN + KT) / (3 * KN + KT)
 UNBREAKABLE = ElasticBrittle(kn=KN, kt=KT, Rn=1e12, Rt=1e12, mu=MU)
+TOOL = ContactLaw(kn=90e9, kt=90e9, mu=0.3, damping=0.9)
 
 NO_PATHS = np.empty((0, 2), int), np.empty(0)
 
@@ -63,7 +65,7 @@ class Assembly:
         O.reset()
         yade_scene.put_rock_materials(mu=MU)
         yade_scene.put_rock(rock)
-        yade_scene.put_loop(kn=KN, kt=KT, mu=MU, damping=damping)
+        yade_scene.put_loop(rock=UNBREAKABLE, damping=damping)
         self.bonds = Bonds(pairs=rock.pairs, law=law, clock=lambda: O.time)
         yade_scene.make_bonds(rock, self.bonds)
         self.expansion = Expansion(coefficient=ALPHA, rock=rock, reference=0.0, temperature=lambda: self.temperature,
@@ -247,7 +249,7 @@ def two_spinning(period, duration=0.02):
     yade_scene.put_rock_materials(mu=MU)
     yade_scene.put_rock(rock)
     # A shear spring so stiff that it takes up nothing.
-    yade_scene.put_loop(kn=KN, kt=1e5 * KN, mu=MU)
+    yade_scene.put_loop(rock=ContactLaw(kn=KN, kt=1e5 * KN, mu=MU))
     for body in O.bodies:
         body.mat = O.materials["loose rock"]
     O.dt = 1e-6
@@ -301,7 +303,7 @@ def sliding_block():
     yade_scene.put_tool_material(mu=0.3, contact_damping=0.9)
     rock = arranged([(0, 0)], stone, pairs=np.empty((0, 2)), fixed=(0,))
     yade_scene.put_rock(rock)
-    yade_scene.put_loop(kn=KN, kt=KT, mu=MU, tool=(90e9, 90e9, 0.3))
+    yade_scene.put_loop(rock=UNBREAKABLE, tool=TOOL)
     O.bodies[0].mat = O.materials["loose rock"]
     bodies = {}
     for index, place in enumerate(places.tolist()):
@@ -360,7 +362,7 @@ def collisions():
             thrown = math.radians(angle)
             rock = arranged([(0, 0)], radius, pairs=np.empty((0, 2)))
             yade_scene.put_rock(rock)
-            yade_scene.put_loop(kn=KN, kt=KT, mu=MU, tool=(90e9, 90e9, 0.3))
+            yade_scene.put_loop(rock=UNBREAKABLE, tool=TOOL)
             O.bodies[0].mat = O.materials["loose rock"]
             O.bodies[0].state.vel = (speed * math.cos(thrown), speed * math.sin(thrown), 0)
             body = yade_scene.finite_disc((1.5 * radius + 1e-6, 0.0), radius / 2, material="steel", mask=yade_scene.TOOL_MASK, mass=0.0,
