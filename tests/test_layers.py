@@ -20,9 +20,9 @@ LAYERS = {
     "rockwear/scenes": (
         {"rockwear.kernels", "rockwear.model", "rockwear.engines", "rockwear.run", "rockwear.scenes"}, YADE),
     "yade_scripts": ({"rockwear.scenes", "rockwear.run", "calibration.laboratory"}, set()),
-    # A script without a scene: it compares YADE's forces with the bond laws.
-    "yade_scripts/two_disc.py": (
-        {"rockwear.kernels", "rockwear.report", "rockwear.run", "rockwear.scenes"}, PAPER | YADE),
+    "calibration/laboratory": (
+        {"rockwear.kernels", "rockwear.model", "rockwear.engines", "rockwear.run", "rockwear.report", "rockwear.scenes",
+         "calibration.laboratory"}, YADE),
 }
 
 

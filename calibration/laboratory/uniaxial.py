@@ -220,7 +220,8 @@ class UniaxialOutput(Output):
         return O.energy["nonviscDamp"] if "nonviscDamp" in O.energy.keys() else 0.0
 
     def balances(self):
-        """The energy balance, J per metre of thickness: the platens' work, where it went, and what the balance misses."""
+        """The energy balance, J per metre of thickness: the platens' work, where it went, and what the balance
+        misses."""
         balance = {"platen_work": self.scene.platens.work}
         balance.update({name: now - self.scene.base[name] for name, now in self.scene.stored_energy().items()})
         balance.update(rock_friction=self.scene.rock_friction.total, bond_breaking=self.scene.bonds.energy_released,

@@ -109,7 +109,8 @@ def _put_pair(radii, normal, swapped):
 
 
 def programme(law, end_n, end_t, steps):
-    """Paths of [Rojek 2003, 4.6] as {name: (un, ut)}; end_n, end_t: displacement (m) at which a bond is gone in tension and shear.
+    """Paths of [Rojek 2003, 4.6] as {name: (un, ut)}; end_n, end_t: displacement (m) at which a bond is gone in
+    tension and shear.
 
     steps: on the longest leg of each. Shear with compression: tangential rate 10 times the normal one; with tension:
     twice. Unloading goes to where an elasto-plastic bond is free of stress.
