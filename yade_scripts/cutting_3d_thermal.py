@@ -15,6 +15,6 @@ from rockwear.scenes import cutting_3d
 
 THERMAL = cutting_3d.groups(
     heat=True, hardness=0.0, velocity=0.4, lowering_velocity=0.4, wear_coefficient=0.01128, wear_acceleration=1e3,
-    heat_period=5e-3, surface_period=0.02, snapshot_period=0.02, record_period=1e-3)
+    snapshot_period=0.02, record_period=1e-3)
 
 main("cutting_3d_thermal", THERMAL, cutting_3d.make)

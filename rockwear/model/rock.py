@@ -108,7 +108,8 @@ class RockAssembly:
 
     def paths(self, model, conductivity):
         """Pairs (m, 2) of particles that exchange heat and their conductances (m,) W/K; model: of conduction.PATHS."""
-        return paths(model, conductivity, pairs=self.pairs, cells=lambda: self.cells,
+        thickness = 1.0 if self.depth is None else 2 * float(self.radii.mean())
+        return paths(model, conductivity, pairs=self.pairs, cells=lambda: self.cells, thickness=thickness,
                      fitted=lambda: self._fitted_conductance(conductivity))
 
     def _fitted_conductance(self, conductivity):

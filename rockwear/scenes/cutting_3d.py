@@ -30,7 +30,8 @@ GROUPS = parameters.with_defaults(
     kn=1e6, kt=1e6, Rn=500.0, Rt=5000.0, mu=0.5, tool_kn=1e6, tool_kt=1e6, tool_mu=0.1, contact_damping=0.0,
     hardness=1.0,
     wear_coefficient=0.0, wear_acceleration=1.0, removal="none", heat=False, damping_period=100, rock_sampling_period=8,
-    wear_period=10, record_period=2e-3)
+    wear_period=10, record_period=2e-3, heat_period=2e-3,
+    surface_period=0.02)
 SETTLING = (
     Parameter("settling", 0.4, "s", parameters.duration, "time for the fill to settle under gravity"),
     Parameter("settling_damping", 50.0, "1/s", number(0), "background damping while it settles"),
