@@ -123,8 +123,8 @@ def rock_temperature(run, shot):
 def tool_heat(run, shot):
     """(positions (n, d) m in the tool's own frame, radii (n,) m, temperatures (n,) K) of what is left of the tool.
 
-    Thermal nodes are the tool's particles, or stand inside a tool of facets by themselves; none where a run does not say
-    where they are.
+    Thermal nodes are the tool's particles, or stand inside a tool of facets by themselves; none where a run does not
+    say where they are.
     """
     values, model = shot["temperature"][len(run.model["rock_radii"]):], run.model
     if has_particles(run):

@@ -10,7 +10,7 @@ import pytest
 from rockwear.kernels.boundary import prism, segments
 from rockwear.report import bodies, instants, pages, plots
 from rockwear.report.folder import RunFolder
-from rockwear.report.views import forces, history, key_results, outlines, stages, temperature, two_disc
+from rockwear.report.views import forces, history, key_results, outlines, speeds, stages, temperature, two_disc
 from tests.report.made_up import HEADER, HOT, lattice, make_run
 
 ROOT = Path(__file__).parents[2]
@@ -201,6 +201,25 @@ def test_times_are_shown_in_ms_or_s(tmp_path):
     change(folder, snapshot=lambda arrays, k: {**arrays, "time": 1.0 * k})
     run = RunFolder(folder)
     assert instants.clock(run) == (1.0, "s") and instants.moment(run, 3) == "cycle 1, 3.000 s"
+
+
+def test_temperatures_at_several_speeds_are_listed(tmp_path):
+    folder = make_run(tmp_path / "run")
+    parameters(folder, velocities="4,0.4", wear_velocity=0.4)
+    summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    for k, u in enumerate(("4", "0.4")):
+        for n, name in enumerate(("hottest_after_the_pass", "hottest_fixed_shank", "hottest_insulated_shank")):
+            summary["results"][f"{name}_{u}"] = {"value": 373.15 + 100 * k + 10 * n, "unit": "K"}
+    for k, shank in enumerate(("fixed", "insulated")):
+        summary["results"][f"worn_volume_from_{shank}_shank"] = {"value": (k + 1) * 1e-6, "unit": "m3/m"}
+        summary["results"][f"mass_lost_from_{shank}_shank"] = {"value": 0.01 * (k + 1), "unit": "-"}
+    (folder / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
+    run = RunFolder(folder)
+    assert speeds.speed_tables(run) is None
+    (folder / "tool_fields.csv").write_text("x [m],y [m],radius [m]\n", encoding="utf-8")
+    page = speeds.speed_tables(run).html()
+    for shown in ("100 °C", "110 °C", "120 °C", "200 °C", "210 °C", "220 °C", "1 mm³/mm", "2 mm³/mm", "1 %", "2 %"):
+        assert f">{shown}<" in page, shown
 
 
 def test_two_discs_are_drawn_from_their_paths(tmp_path):

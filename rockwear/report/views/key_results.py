@@ -88,7 +88,8 @@ def crack_tile(run):
 
 def wear_tiles(run):
     """Wear of the tool; none where nothing could wear."""
-    if run.parameters.get("wear_acceleration") == 0 or math.isfinite(run.result("k_given")):
+    no_wear = 0 in (run.parameters.get("wear_acceleration"), run.parameters.get("wear_coefficient"))
+    if no_wear or math.isfinite(run.result("k_given")):
         return []
     removed, kept = run.result("particles_removed"), keeps_shape(run)
     depth_remark = "that a facet would go back" if kept else "from the new surface to the worn one"

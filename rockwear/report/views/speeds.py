@@ -68,7 +68,7 @@ def speeds(run):
 
 def speed_table(run, names):
     """Heat and temperatures at each speed."""
-    kinds = "after_the_pass", "fixed_root", "insulated_root"
+    kinds = "after_the_pass", "fixed_shank", "insulated_shank"
     rows = [(f"{u} m/s", f"{number(1e-3 * run.result(f'friction_heat_of_the_tool_{u}'))} kW/m",
              f"{number(run.result(f'conductance_to_the_rock_{u}'))} W/mK",
              *(quantity(run.result(f"hottest_{kind}_{u}"), "K") for kind in kinds))
@@ -79,9 +79,9 @@ def speed_table(run, names):
 
 def wear_table(run):
     """Wear of the last passes, from either field."""
-    rows = [(f"from the field of the {shank} shank", quantity(run.result(f"worn_volume_from_{shank}_root"), "m3/m"),
-             f"{number(100 * run.result(f'mass_lost_from_{shank}_root'))} %") for shank in ("fixed", "insulated")
-            if np.isfinite(run.result(f"worn_volume_from_{shank}_root"))]
+    rows = [(f"from the field of the {shank} shank", quantity(run.result(f"worn_volume_from_{shank}_shank"), "m3/m"),
+             f"{number(100 * run.result(f'mass_lost_from_{shank}_shank'))} %") for shank in ("fixed", "insulated")
+            if np.isfinite(run.result(f"worn_volume_from_{shank}_shank"))]
     header = f"wear at {run.parameter('wear_velocity', 0)} m/s", "by the wear law", "mass lost"
     return table(rows, header) if rows else ""
 
@@ -100,7 +100,7 @@ def tip_figure(run):
         for shank, style in (("insulated", "-"), ("fixed", "--")):
             axes.plot(columns[f"time_{shank}_{u}"], columns[f"{shank}_{u}"] - start, color=colour, linestyle=style,
                       linewidth=1)
-            axes.axhline(run.result(f"hottest_{shank}_root_{u}") - start, color=colour, linestyle=":", linewidth=1,
+            axes.axhline(run.result(f"hottest_{shank}_shank_{u}") - start, color=colour, linestyle=":", linewidth=1,
                          xmin=0.93 if shank == "insulated" else 0.9)
     axes.plot([], [], color=palette.OUTLINE, linewidth=1, label="mean load, shank insulated")
     axes.plot([], [], color=palette.OUTLINE, linestyle="--", linewidth=1, label="mean load, shank at its temperature")
