@@ -27,10 +27,11 @@ def arguments(values):
 
 
 def start(script, words=(), threads=1, **options):
-    """Start a YADE script, its output captured."""
+    """Start a YADE script, its output captured. It may import from its own folder, as under Python."""
+    environment = {**os.environ, "PYTHONPATH": f"{ROOT}{os.pathsep}{Path(script).parent}"}
     return subprocess.Popen(["yade", "-n", "-x", f"-j{threads}", str(script), *words], stdout=subprocess.PIPE,
                             stderr=subprocess.PIPE, stdin=subprocess.DEVNULL, encoding="utf-8",
-                            **{"env": {**os.environ, "PYTHONPATH": str(ROOT)}, **options})
+                            **{"env": environment, **options})
 
 
 def finish(process, out=None):

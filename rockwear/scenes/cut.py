@@ -206,7 +206,7 @@ class Cut(Scene):
     def restore(self, state, directory, folder):
         self.programme.load(directory, folder)
         super().restore(state, directory, folder)
-        self.programme.restore(state.get("programme", {}))
+        self.programme.restore(state["programme"])
         self.energy.restore(state["energy"])
 
     def _restore_engines(self, state):

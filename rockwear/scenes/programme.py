@@ -36,6 +36,7 @@ class Programme(ABC):
 
     def begin(self):
         """The scene stands before its first step."""
+        self.path_start = O.iter
 
     # ---- the clock
 
@@ -48,6 +49,10 @@ class Programme(ABC):
     def time(self):
         """Simulated seconds of the process over all stages."""
         return self.scene.clock + self.step * self.scene.time_step * self.scene.time_scale
+
+    def path_time(self):
+        """Seconds of the mechanics along the path; rock that is put back puts back this clock too."""
+        return (O.iter - self.path_start) * self.scene.time_step
 
     def heat_time_scale(self):
         """Seconds of the process, in which heat flows, in a second of the mechanics."""
@@ -84,10 +89,11 @@ class Programme(ABC):
 
     def state(self):
         """What must survive a restart."""
-        return {}
+        return {"path_start": self.path_start}
 
     def restore(self, state):
         """Take back what `state` gave."""
+        self.path_start = int(state["path_start"])
 
     def save(self, directory, folder):
         """Write files into `directory` of a checkpoint of the run in `folder`."""
@@ -241,9 +247,10 @@ class Cycles(Programme):
 
     def state(self):
         steps = np.array([steps for _, steps in self.scene.stages])
-        return {"stage_steps": steps, "approach_steps": self.approach_steps, "start": self.start.state()}
+        return {**super().state(), "stage_steps": steps, "approach_steps": self.approach_steps, "start": self.start.state()}
 
     def restore(self, state):
+        super().restore(state)
         scene = self.scene
         scene.stages = [(name, int(steps)) for (name, _), steps in zip(scene.stages, state["stage_steps"])]
         self.approach_steps = state["approach_steps"].copy()

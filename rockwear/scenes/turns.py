@@ -3,7 +3,6 @@ from contextlib import contextmanager
 
 import numpy as np
 from scipy.spatial import cKDTree
-from yade import O
 
 from rockwear.kernels.conduction import HeatNetwork
 from rockwear.scenes.programme import Programme, StartState
@@ -45,13 +44,6 @@ class Turns(Programme):
         self.scene.stages = [(name, max(1, round(times[name] / self.cooling_period)) if "cooling" in name else steps)
                              for name, steps in self.scene.stages]
         self.cooling_step = (self.turn_time - self.cut_time) / self.scene.stages[2][1]
-
-    def begin(self):
-        self.path_start = O.iter
-
-    def path_time(self):
-        """Seconds of the mechanics along the path; the rock put back before a cut puts back this clock too."""
-        return (O.iter - self.path_start) * self.scene.time_step
 
     # ---- the clock
 
@@ -105,12 +97,11 @@ class Turns(Programme):
     # ---- what a checkpoint holds
 
     def state(self):
-        return {"cooled": self.cooled, "worn_heat": self.worn_heat,
-                "path_start": self.path_start, "start": self.start.state()}
+        return {**super().state(), "cooled": self.cooled, "worn_heat": self.worn_heat, "start": self.start.state()}
 
     def restore(self, state):
-        self.cooled, self.path_start = int(state["cooled"]), int(state["path_start"])
-        self.worn_heat = float(state["worn_heat"])
+        super().restore(state)
+        self.cooled, self.worn_heat = int(state["cooled"]), float(state["worn_heat"])
         self.start.restore(state["start"])
 
     def save(self, directory, folder):

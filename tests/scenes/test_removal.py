@@ -22,7 +22,7 @@ def books_close(balances):
     assert abs(mass["unexplained"]) < 1e-12 * mass["initial"]
 
 
-@pytest.mark.parametrize("acceleration, least", [(3e6, 50), (3e5, 5)])
+@pytest.mark.parametrize("wear_acceleration, least", [(3e6, 50), (3e5, 5)])
 def test_uncovered_particles_come_without_a_push(wear_acceleration, least):
     """What has just been uncovered overlaps no rock: no force from nowhere, and the energy that contacts take with them
     is in the book."""

@@ -1,13 +1,13 @@
 """The test tooth with a time step that its own check would never let pass."""
-
-from rockwear.run import main as run
+from rockwear.run.main import main
 from rockwear.scenes import cutting
 
 
-class Unstable(cutting.Cutting):
-    def _choose_time_step(self, v):
-        super()._choose_time_step(v)
-        self.time_step = 3 * self.bonded_step
+def make(values):
+    """The scene of the test tooth at three times its critical step."""
+    scene = cutting.make(values)
+    scene.time_step = 3 * scene.bonded_step
+    return scene
 
 
-run.main("unstable", cutting.PARAMETERS, Unstable)
+main("blow_up", cutting.GROUPS, make)

@@ -6,13 +6,13 @@ import sys
 from yade import FrictPhys, JCFpmPhys, O, utils
 
 from rockwear.run import parameters
-from rockwear.run import main as run
-from rockwear.scenes.cutting import PARAMETERS, Cutting
+from rockwear.run.main import COMMON
+from rockwear.scenes import cutting
 
 found = {}
-scene = Cutting(parameters.read([*PARAMETERS, *run.COMMON], sys.argv[1:]))
+scene = cutting.make(parameters.read([*cutting.GROUPS, COMMON], sys.argv[1:]))
 scene.build()
-scene.bodies.erase(list(scene.bodies.body_of))
+scene.tool.bodies.erase(list(scene.tool.bodies.body_of))
 rock = scene.rock
 
 
@@ -45,7 +45,7 @@ contact = O.interactions[0, 1]
 overlap = reach - (second.state.pos - first.state.pos).norm()
 found["new_contact"] = {"is_plain": isinstance(contact.phys, FrictPhys), "kn": contact.phys.kn, "ks": contact.phys.ks,
                         "friction": contact.phys.tangensOfFrictionAngle, "force": contact.phys.normalForce.norm(),
-                        "expected_force": scene.v.kn * contact.geom.penetrationDepth, "overlap": overlap,
+                        "expected_force": scene.bond_law.kn * contact.geom.penetrationDepth, "overlap": overlap,
                         "friction_ratio": contact.phys.shearForce.norm() / contact.phys.normalForce.norm()}
 
 print("RESULT " + json.dumps(found))

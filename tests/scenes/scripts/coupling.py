@@ -28,6 +28,7 @@ from rockwear.model.contact import ContactLaw
 from rockwear.model.materials import SANDSTONE, STEEL
 from rockwear.model.rock import Specimen
 from rockwear.model.thermal_body import ParticleBody
+from yade_loop import insert
 
 KN, KT, MU, ALPHA, D = 20e9, 5e9, 0.5, 1e-5, 2e-3
 E = 2 * math.sqrt(3) * KN * (KN + KT) / (3 * KN + KT)
@@ -69,11 +70,8 @@ class Assembly:
         self.bonds = Bonds(pairs=rock.pairs, law=law, clock=lambda: O.time)
         yade_scene.make_bonds(rock, self.bonds)
         self.expansion = Expansion(coefficient=ALPHA, rock=rock, reference=0.0, temperature=lambda: self.temperature,
-                                   bonds=self.bonds)
-        base.register([self.bonds, self.expansion])
-        O.engines = O.engines[:-1] + base.runners({"bonds": 1}) + O.engines[-1:]
-        self.bonds.connect()
-        self.expansion.connect()
+                                   bonds=self.bonds, period=None)
+        insert(self.bonds, self.expansion)
         O.dt = 0.6 * critical_time_step(positions=rock.positions, radii=rock.radii, masses=rock.masses,
                                         inertias=rock.inertias, bonds=rock.pairs, kn=KN, kt=KT)
 
@@ -256,26 +254,20 @@ def two_spinning(period, duration=0.02):
     # Both turn the same way, so that their surfaces pass each other.
     for body in O.bodies:
         body.state.angVel = (0, 0, 20.0)
-    speed = 2 * 20.0 * radius
-    bonds = Bonds(pairs=rock.pairs, law=UNBREAKABLE, clock=lambda: O.time)
+    speed, steps = 2 * 20.0 * radius, round(period / O.dt)
+    bonds = Bonds(pairs=rock.pairs, law=UNBREAKABLE, clock=lambda: O.time, period=None)
     motion = VelocityIncrement(masses=rock.masses, inertias=rock.inertias, radii=rock.radii, fixed=rock.fixed)
     friction = RockFriction(bonds=bonds, motion=motion)
     network = HeatNetwork(capacity=np.full(2, capacity), temperature=300.0, edges=NO_PATHS[0], conductance=0.0)
     untouched = SimpleNamespace(take_heating=lambda: (np.empty(0), np.zeros(2), {}))
     heat = Heat(network=network, bonds=bonds, rock_friction=friction, tool_contact=untouched, rock=rock,
-                body=body_of_discs(np.empty((0, 2)), radius), heat_fraction=chi, tool_share=0.5, contact_conductance=0.0, convection=0.0, ambient=300.0,
-                rock_paths=NO_PATHS, tool_paths=NO_PATHS, surface_period=1.0, conduction=False)
+                body=body_of_discs(np.empty((0, 2)), radius), heat_fraction=chi, tool_share=0.5, contact_conductance=0.0,
+                convection=0.0, ambient=300.0, rock_paths=NO_PATHS, tool_paths=NO_PATHS, surface_period=1.0, conduction=False,
+                period=steps)
     expansion = Expansion(coefficient=alpha, rock=rock, reference=300.0, temperature=lambda: network.temperature,
-                          bonds=bonds, loose=lambda: friction.contacts)
+                          bonds=bonds, loose=lambda: friction.contacts, period=steps)
     O.run(10, True)
-    base.register([friction, heat, expansion])
-    for engine in (bonds, friction, heat, expansion):
-        engine.connect()
-    steps = round(period / O.dt)
-    O.engines = (O.engines[:-1] + base.runners({"rock_friction": 1}) + O.engines[-1:]
-                 + base.runners({"heat": steps, "expansion": steps}))
-    for engine in (friction, heat, expansion):
-        engine.last_iteration = O.iter
+    insert(bonds, friction, heat, expansion)
     O.run(round(duration / O.dt), True)
     heat.act(), expansion.act()
     if base.failures:
@@ -312,9 +304,9 @@ def sliding_block():
         bodies[index] = O.bodies.append(body)
     tool = SimpleNamespace(count=discs, body_of=bodies, ids=list(bodies.values()),
                            velocity_at=lambda *contact: (0.0, 0.0, 0.0))
-    bonds = Bonds(pairs=rock.pairs, law=UNBREAKABLE, clock=lambda: O.time)
+    bonds = Bonds(pairs=rock.pairs, law=UNBREAKABLE, clock=lambda: O.time, period=None)
     motion = VelocityIncrement(masses=rock.masses, inertias=rock.inertias, radii=rock.radii, fixed=rock.fixed)
-    friction = RockFriction(bonds=bonds, motion=motion)
+    friction = RockFriction(bonds=bonds, motion=motion, period=4)
     contact = ToolContact(tool=tool, motion=motion)
     c_rock, c_tool = 5.0, 2.0
     network = HeatNetwork(capacity=np.array([c_rock] + discs * [c_tool]), temperature=300.0, edges=NO_PATHS[0],
@@ -323,14 +315,11 @@ def sliding_block():
     share, chi = effusivity_share(e_tool, e_rock), 0.85
     heat = Heat(network=network, bonds=bonds, rock_friction=friction, tool_contact=contact, rock=rock,
                 body=body_of_discs(places, radius), heat_fraction=chi, tool_share=share, contact_conductance=0.0,
-                convection=0.0, ambient=300.0, rock_paths=NO_PATHS, tool_paths=NO_PATHS, surface_period=1.0, conduction=False)
+                convection=0.0, ambient=300.0, rock_paths=NO_PATHS, tool_paths=NO_PATHS, surface_period=1.0, conduction=False,
+                period=100)
     O.dt = 1e-8
-    base.register([contact, friction, heat])
-    O.engines = (O.engines[:-1] + base.runners({"tool_contact": 1, "rock_friction": 4}) + O.engines[-1:]
-                 + base.runners({"heat": 100}))
-    for engine in (bonds, friction, contact, heat):
-        engine.connect()
-    kn, kt, load = 90e9, 90e9, 0.0
+    insert(bonds, contact, friction, heat)
+    kn, kt, load = TOOL.kn, TOOL.kt, 0.0
     slip, turns = 0.0, []
     for sign in (1, -1, 1):
         O.bodies[0].state.angVel = (0, 0, sign * angular_velocity)
@@ -352,7 +341,7 @@ def sliding_block():
 
 
 def collisions():
-    """A disc thrown askew against a disc of the tool: what it loses, and what the accounts of ToolContact have of it."""
+    """A disc thrown askew against a disc of the tool: what it loses, and what the sums of ToolContact have of it."""
     radius, speed, found = 1.2e-3, 4.0, []
     for angle in (20, 45, 70):
         for fraction in (0.8, 0.08):
@@ -373,10 +362,8 @@ def collisions():
                                    velocity_at=lambda *contact: (0.0, 0.0, 0.0))
             motion = VelocityIncrement(masses=rock.masses, inertias=rock.inertias, radii=rock.radii, fixed=rock.fixed)
             contact = ToolContact(tool=tool, motion=motion)
-            O.dt = fraction * 2 / math.sqrt(2 * 90e9 / rock.masses[0]) * (math.sqrt(1 + 0.81) - 0.9)
-            base.register([contact])
-            O.engines = O.engines[:-1] + base.runners({"tool_contact": 1}) + O.engines[-1:]
-            contact.connect()
+            O.dt = fraction * 2 / math.sqrt(2 * TOOL.kn / rock.masses[0]) * (math.sqrt(1 + 0.81) - 0.9)
+            insert(contact)
             state = O.bodies[0].state
 
             def kinetic():

@@ -1,18 +1,23 @@
-"""The test tooth on a curved path, watched from outside: its place at the end, and the power of all forces on it."""
+"""The test tooth on a curved path, observed from outside: its place at the end, and the power of all forces on it."""
+from types import SimpleNamespace
 
 import numpy as np
 from yade import O
 
-from rockwear.run import main as run
-from rockwear.scenes import cutting
-from rockwear.engines.base import Engine
+from rockwear.engines.base import FORCES, Engine
 from rockwear.kernels.rigid_motion import SwingAndRotation
+from rockwear.run.main import main
+from rockwear.scenes import cutting, parts
+from rockwear.scenes.cut import Cut
+from rockwear.scenes.cut_output import CutOutput
+from rockwear.scenes.programme import Cycles
 
 
 class Power(Engine):
     """Work of all forces and torques on the tool's bodies, step by step."""
 
     name = "power"
+    phase = FORCES
 
     def __init__(self, bodies):
         super().__init__()
@@ -31,32 +36,47 @@ class Power(Engine):
         self.work = float(state["work"])
 
 
-class Curved(cutting.Cutting):
-    """A turn about a centre 15 mm above the tip at 200 rad/s, and a swing."""
+class CurvedCycles(Cycles):
+    """A rotation about a centre 15 mm above the tip at 200 rad/s, and a swing."""
 
-    looking = {*cutting.Cutting.looking, "power"}
+    def attach(self, scene):
+        super().attach(scene)
+        self.motion = SwingAndRotation(centre=self.motion.start + (0, 0.015), swing=(1.0, -0.5), angular_velocity=200.0,
+                                       pivot=(0, 0.015))
 
-    def _motion(self, v):
-        straight = super()._motion(v)
-        return SwingAndRotation(centre=straight.start + (0, 0.015), swing=(1.0, -0.5), angular_velocity=200.0, pivot=(0, 0.015))
+
+class Output(CutOutput):
+    """With how far the tool is off its path, and the work of all forces on it."""
+
+    def results(self):
+        tool = self.scene.tool
+        pose, bodies = self.scene.programme.motion.pose(self.scene.programme.path_time()), tool.bodies
+        exact = pose.of(tool.model.positions[list(bodies.body_of)])
+        now = np.array([tuple(O.bodies[body].state.pos)[:2] for body in bodies.body_of.values()])
+        bodies.connect()
+        return {**super().results(), "off_path": (float(np.abs(now - exact).max()), "m"),
+                "off_turn": (abs(bodies.pose.turn - pose.turn), "rad"), "power_work": (self.scene.power.work, "J/m"),
+                "turned": (pose.turn, "rad"), "cutting_work": (tool.contact.work_done, "J/m")}
+
+
+class CurvedCut(Cut):
+    """Records the power before the contacts of the tool are sampled."""
+
+    def __init__(self, **given):
+        super().__init__(**given)
+        self.output = Output(self)
 
     def _make_engines(self):
         super()._make_engines()
-        self.power = Power(self.bodies)
-        self._register(self.live[0], self.power, *self.live[1:])
-
-    def _periods(self):
-        return {**super()._periods(), "power": 1}
-
-    def results(self):
-        tool = self.bodies
-        exact = self.motion.pose(self._path_time()).of(self.tool.positions[list(tool.body_of)])
-        now = np.array([tuple(O.bodies[body].state.pos)[:2] for body in tool.body_of.values()])
-        turn = self.motion.pose(self._path_time()).turn
-        tool.connect()
-        return {**super().results(), "off_path": (float(np.abs(now - exact).max()), "m"),
-                "off_turn": (abs(tool.pose.turn - turn), "rad"), "power_work": (self.power.work, "J/m"),
-                "turned": (turn, "rad"), "cutting_work": (self.contact.work_done, "J/m")}
+        self.power = Power(self.tool.bodies)
+        self._register(self.bonds, self.power, *self.engines[1:])
 
 
-run.main("curved", cutting.PARAMETERS, Curved)
+def make(values):
+    """The scene of the test tooth on that path."""
+    v = SimpleNamespace(**values)
+    return CurvedCut(rock=cutting.box(v), tool=cutting.tool(v), background_damping=v.background_damping,
+                     programme=CurvedCycles(times=cutting.times(v), **cutting.motion(v)), **parts.common(v))
+
+
+main("curved_cut", cutting.GROUPS, make)

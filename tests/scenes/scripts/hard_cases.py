@@ -23,7 +23,8 @@ from rockwear.engines.velocity_increment import VelocityIncrement
 from rockwear.engines.shear_rotation import ShearRotation
 from rockwear.kernels.bond_laws import ElasticBrittle, ElasticDamage, ElastoPlasticSoftening
 from rockwear.kernels.packing import contacts
-from rockwear.scenes.two_disc import lead
+from rockwear.scenes.two_disc import drive_pair
+from yade_loop import insert
 
 KN, KT, RN, RT, MU = 2e10, 1e10, 1e5, 6e4, 0.8
 SPRING = dict(kn=KN, kt=KT, mu=MU)
@@ -57,7 +58,7 @@ def bonded(rock, law, **loop):
     O.reset()
     yade_scene.put_rock_materials(mu=law.mu)
     yade_scene.put_rock(rock)
-    yade_scene.put_loop(kn=law.kn, kt=law.kt, mu=law.mu, **loop)
+    yade_scene.put_loop(rock=law, **loop)
     bonds = Bonds(pairs=rock.pairs, law=law, clock=lambda: O.time)
     yade_scene.make_bonds(rock, bonds)
     return bonds
@@ -73,13 +74,7 @@ def moving_lattice(law, gradient, *first, ratcheting_free=True):
     for i, (x, y) in enumerate((rock.positions - rock.positions.mean(axis=0)) @ np.transpose(gradient)):
         O.bodies[i].state.vel = (x, y, 0.0)
     O.dt = TIME_STEP
-    all_engines = [*first, bonds, friction, Separation(bonds)]
-    base.register(all_engines)
-    periods = {engine.name: 50 if engine.name == "separation" else 1 for engine in all_engines}
-    O.engines = O.engines[:-1] + base.runners(periods) + O.engines[-1:]
-    for engine in all_engines:
-        engine.last_iteration = O.iter - 1
-        engine.connect()
+    insert(*first, bonds, friction, Separation(bonds, period=50))
 
     def in_no_book():
         return (utils.kineticEnergy() + bonds.elastic_energy() + friction.elastic_energy() + bonds.energy_released
@@ -119,10 +114,11 @@ class Eraser(base.Engine):
     """Erases a disc at certain steps, from within the loop and before the bonds are visited."""
 
     name = "eraser"
+    phase = base.FORCES
 
     def __init__(self, discs):
         super().__init__()
-        self.discs, self.start = dict(discs), O.iter
+        self.discs = dict(discs)
 
     def act(self):
         for disc in self.discs.pop(O.iter - self.first, []):
@@ -174,7 +170,7 @@ def cycled(law, seed=4, legs=60):
     path = np.vstack([a + (b - a) * np.linspace(0, 1, 30, endpoint=False)[:, None]
                       for a, b in zip(corners, corners[1:])])
     with mock.patch.object(Bonds, "_return_to_yade", counting):
-        response = lead(law, *path.T, radii=(1e-3, 1.6e-3))
+        response = drive_pair(law, *path.T, radii=(1e-3, 1.6e-3))
     Fn, Ft = law.drive(response.un, response.ut[:, 0])
     deviation = max(abs(Fn - response.Fn).max(), abs(Ft - response.Ft[:, 0]).max()) / max(law.Rn, law.Rt)
     return {"deviation": float(deviation), "returns": returns[0]}
@@ -195,9 +191,7 @@ def rolled(law):
                            inertias=0.5 * masses * radii**2, fixed=np.zeros(2, bool), pairs=np.array([(0, 1)]))
     bonds = bonded(rock, law)
     O.dt, speed = TIME_STEP, 2 * math.pi * 3 / (3000 * TIME_STEP)
-    base.register([bonds])
-    O.engines = O.engines[:-1] + base.runners({"bonds": 1}) + O.engines[-1:]
-    bonds.connect()
+    insert(bonds)
     for body, sign in ((0, 1), (1, -1)):
         O.bodies[body].state.angVel = (0, 0, sign * speed * radii[0] / radii[body])
     run(3000)
@@ -249,11 +243,7 @@ def spinning(corrected):
     for body, place in zip(O.bodies, places):
         body.state.vel = tuple(np.cross(angular_velocity, place) + chance.normal(0, 0.5, 3))
         body.state.angVel = tuple(angular_velocity + chance.normal(0, 20, 3))
-    turning = ShearRotation(bonds=bonds, radii=rock.radii)
-    base.register([turning, bonds])
-    first = base.runners({"shear_rotation": 1}) if corrected else []
-    O.engines = first + O.engines[:-1] + base.runners({"bonds": 1}) + O.engines[-1:]
-    bonds.connect()
+    insert(*([ShearRotation(bonds=bonds, radii=rock.radii)] if corrected else []), bonds)
     O.dt = step
 
     def energy():

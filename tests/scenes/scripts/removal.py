@@ -12,10 +12,11 @@ from scipy.spatial import cKDTree
 from yade import InsertionSortCollider, NewtonIntegrator, O, PyRunner
 
 from rockwear.engines import access
-from rockwear.run import parameters
-from rockwear.scenes.cutting import PARAMETERS, Cutting
-from rockwear.kernels.wear_laws import WORK
 from rockwear.kernels.parameter import Parameter, flag
+from rockwear.kernels.wear_laws import WORK
+from rockwear.run import parameters
+from rockwear.run.main import COMMON
+from rockwear.scenes import cutting
 
 BAND = 1.5e-3, 3e-3
 """Heights in the tool's own frame (m) between which the saw takes everything away: below all that the shank holds."""
@@ -25,20 +26,20 @@ class Saw:
     """In place of a wear law: wears the band away in one visit."""
 
     def volume(self, slid, hardness, area):
-        y = scene.tool.positions[:, 1]
-        return np.where((y > BAND[0]) & (y < BAND[1]), scene.tool.volumes, 0.0)
+        y = tool.positions[:, 1]
+        return np.where((y > BAND[0]) & (y < BAND[1]), tool.volumes, 0.0)
 
 
 def place(index):
-    return np.array(O.bodies[scene.bodies.body_of[int(index)]].state.pos)[:2]
+    return np.array(O.bodies[bodies.body_of[int(index)]].state.pos)[:2]
 
 
 def overlaps(indices):
     """Overlaps (m) with rock of tool particles that are there now."""
-    rock = scene.rock.current_positions()
+    rock = access.rock_positions(scene.rock)
     tree = cKDTree(rock)
     for i in indices:
-        here, reach = place(i), scene.tool.radii[i]
+        here, reach = place(i), tool.radii[i]
         for j in tree.query_ball_point(here, reach + scene.rock.radii.max()):
             yield reach + scene.rock.radii[j] - np.linalg.norm(rock[j] - here)
 
@@ -47,7 +48,7 @@ def spy(add):
     def watched(indices):
         add(indices)
         found.extend(o for o in overlaps(indices) if o > 0)
-        newcomers.update(scene.bodies.body_of[int(i)] for i in indices)
+        newcomers.update(bodies.body_of[int(i)] for i in indices)
     return watched
 
 
@@ -62,8 +63,8 @@ def watch_newcomers():
         if force > 0:
             newcomers.remove(body)
             most = 0.0
-            for contact in O.interactions.withBody(body):
-                speed, phys = contact.geom.incidentVel(contact, False).norm(), contact.phys
+            for interaction in O.interactions.withBody(body):
+                speed, phys = interaction.geom.incidentVel(interaction, False).norm(), interaction.phys
                 most += (phys.kn * O.dt + phys.cn) * speed * math.hypot(1, phys.tangensOfFrictionAngle)
             pushes.append(force / most)
 
@@ -76,31 +77,33 @@ def unseen():
 
 
 SAW = Parameter("saw", False, "", flag, "saw the tooth in two half-way")
-values = parameters.read([*PARAMETERS, SAW], sys.argv[1:])
-scene, found, newcomers, pushes = Cutting(values), [], set(), []
+values = parameters.read([*cutting.GROUPS, COMMON, SAW], sys.argv[1:])
+scene, found, newcomers, pushes = cutting.make(values), [], set(), []
+tool = scene.tool.model
 scene.build()
+bodies, contact, wear = scene.tool.bodies, scene.tool.contact, scene.tool.wear_engine
 # Before the integrator, which changes the speeds that the forces come from.
 before = next(k for k, engine in enumerate(O.engines) if isinstance(engine, NewtonIntegrator))
 O.engines = O.engines[:before] + [PyRunner(command="watch_newcomers()", iterPeriod=1)] + O.engines[before:]
-scene.bodies.add = spy(scene.bodies.add)
+bodies.add = spy(bodies.add)
 sawn = not values["saw"]
 below, unlisted = [], set()
 while not scene.stage_done:
     scene.run_chunk()
     unlisted |= unseen()
     if not sawn and scene.step > scene.stages[0][1] // 2:
-        law, scene.wear.law = scene.wear.law, Saw()
-        scene.contact.slid[WORK][0] += 1e-9
-        scene.wear.act()
-        scene.wear.law, sawn = law, True
-        low = np.flatnonzero(scene.tool.positions[:, 1] < BAND[0])
-        below = [int(np.sum(scene.tool.erosion.alive[low])), sum(int(i) in scene.bodies.body_of for i in low),
-                 sum(index in low for _, index, _, _ in scene.contact.possible)]
-scene.wear.act()
+        law, wear.law = wear.law, Saw()
+        contact.slid[WORK][0] += 1e-9
+        wear.act()
+        wear.law, sawn = law, True
+        low = np.flatnonzero(tool.positions[:, 1] < BAND[0])
+        below = [int(np.sum(tool.erosion.alive[low])), sum(int(i) in bodies.body_of for i in low),
+                 sum(index in low for _, index, _, _ in contact.possible)]
+wear.act()
 if scene.heat:
     scene.heat.act()
-balances = {name: balance for name, (balance, _) in scene.balances().items()}
-print("JSON" + json.dumps({"removed": int(np.sum(~scene.tool.erosion.alive)), "overlaps": found, "pushes": pushes, "below": below, "unlisted": sorted(unlisted),
+balances = {name: balance for name, (balance, _) in scene.output.balances().items()}
+print("JSON" + json.dumps({"removed": int(np.sum(~tool.erosion.alive)), "overlaps": found, "pushes": pushes, "below": below, "unlisted": sorted(unlisted),
                            "balances": balances, "stored_heat": float(scene.heat.network.heat_content)},
                           default=lambda x: x.item()))
 sys.stdout.flush()
