@@ -5,6 +5,7 @@
 Reads run folders of yade_scripts/tooth_cycles.py with --tool particles and --tool segments, several seeds each, draws
 the figure and writes a table of the same name (.md) beside it. calibration/results/facet_tools.md states the result.
 """
+import math
 import sys
 from pathlib import Path
 
@@ -67,9 +68,10 @@ def grouped(runs):
 
 
 def scatter(values):
-    """(mean, standard error) over packings, of what is finite."""
+    """(mean, standard error) of the finite values; nan where there are too few."""
     values = np.asarray(values)[np.isfinite(values)]
-    return np.mean(values), np.std(values, ddof=1) / len(values)**0.5
+    return (np.mean(values) if len(values) else math.nan,
+            np.std(values, ddof=1) / len(values)**0.5 if len(values) > 1 else math.nan)
 
 
 def figure(groups):

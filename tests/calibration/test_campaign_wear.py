@@ -12,12 +12,15 @@ from calibration.campaigns.runs import finished
 from rockwear.kernels.polygon import area
 from rockwear.report.folder import RunFolder
 
-from tests.running import ROOT, SMALL
+from tests.running import ROOT
 
-WEARING = dict(SMALL, start_up=8e-4, cycles=2, heat="false")
-SMALL_ROCK = {name: SMALL[name] for name in ("width", "height", "radius_min", "radius_max")}
+ROCK = dict(width=0.045, height=0.03, radius_min=2e-3, radius_max=3e-3)
+TINY = dict(ROCK, tooth_height=0.02, tooth_width=0.014, rake=10, clearance=10, tip_radius=2e-3, depth_of_cut=8e-3,
+            start_up=9e-4, cycles=2, cycle_time=3e-4, snapshot_period=4e-4, heat="false")
+PARTICLES = dict(tool_radius_min=0.4e-3, tool_radius_max=0.6e-3)
 SEEDS = 1, 2
-CASES = {"ripper, 2e5": dict(wear_acceleration=4e5), "twice as fast": dict(wear_acceleration=8e5, cycles=1)}
+CASES = {"ripper, 2e5": dict(wear_acceleration=4e5, report="false"),
+         "twice as fast": dict(wear_acceleration=8e5, start_up=6e-4, cycles=1)}
 
 
 @pytest.fixture(scope="module")
@@ -28,10 +31,10 @@ def campaign(tmp_path_factory):
     def run():
         with pytest.MonkeyPatch.context() as patch:
             patch.setattr(campaign_wear, "CASES", {
-                name: (campaign_wear.TOOTH, {**WEARING, **values}) for name, values in CASES.items()})
+                name: (campaign_wear.TOOTH, {**TINY, **PARTICLES, **values}) for name, values in CASES.items()})
             patch.setattr(campaign_wear, "SAME_WORK", {"a hundredth": tuple(CASES), "a quarter": ("test tooth, 9e9",)})
             patch.setattr(sharp_and_worn, "SHAPES", 2)
-            patch.setattr(sharp_and_worn, "CUT", {**sharp_and_worn.CUT, **SMALL_ROCK, "start_up": 6e-4,
+            patch.setattr(sharp_and_worn, "CUT", {**sharp_and_worn.CUT, **ROCK, "start_up": 6e-4,
                                                   "report": "false"})
             patch.setattr(sharp_and_worn, "main", partial(sharp_and_worn.main, seeds=SEEDS))
             campaign_wear.main(folder)
@@ -94,7 +97,7 @@ def test_a_cut_with_another_shape_is_cut_again(campaign):
 
 def test_a_run_that_failed_shows_its_error_and_is_not_kept(tmp_path, monkeypatch, capsys):
     """Its warnings come last, and it leaves a summary as well."""
-    values = {**SMALL, "tool": "segments", "heat": "false", "wear_acceleration": 1e7}
+    values = {**TINY, "tool": "segments", "wear_acceleration": 1e7}
     monkeypatch.setattr(campaign_wear, "CASES", {"too fast": (campaign_wear.TOOTH, values)})
     assert campaign_wear.main(tmp_path) == 1
     assert "too_fast ended with 1: error: the tool's shape cannot follow its wear" in capsys.readouterr().err
