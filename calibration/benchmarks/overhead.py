@@ -14,19 +14,20 @@ from statistics import median
 
 from yade import O, PyRunner
 
-from rockwear.run import parameters
-from rockwear.run import main as run
-from rockwear.scenes.cutting import PARAMETERS, Cutting
+from rockwear.run import parameters, servers
+from rockwear.run.main import COMMON
+from rockwear.scenes import cutting
 
 TURNS, STEPS, WARM_UP = 5, 3000, 0.0015
 
 
 def main():
     """Measure and write."""
-    values = parameters.read([*PARAMETERS, run.COMMON], sys.argv[1:])
+    servers.close()
+    values = parameters.read([*cutting.groups(), COMMON], sys.argv[1:])
     folder = Path(values["out"])
     folder.mkdir(parents=True, exist_ok=True)
-    scene = Cutting(values)
+    scene = cutting.make(values)
     scene.build()
     while scene.time < WARM_UP:
         scene.run_chunk()
@@ -46,7 +47,7 @@ def main():
     (folder / "overhead.json").write_text(json.dumps({
         "seconds_a_step": seconds, "median": medians, "overhead": medians["alive"] / medians["dead"] - 1,
         "bonds": len(scene.rock.pairs), "cracks": len(scene.bonds.cracks),
-        "surface": len(scene.tool.erosion.surface)}, indent=1), encoding="utf-8")
+        "surface": len(scene.tool.model.erosion.surface)}, indent=1), encoding="utf-8")
     os._exit(0)
 
 

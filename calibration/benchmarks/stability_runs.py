@@ -24,7 +24,7 @@ from rockwear.engines.softening import UNLIMITED
 from rockwear.kernels.packing import contacts, pack
 from rockwear.kernels.parameter import Parameter, flag, integer, text
 from rockwear.kernels.stability import critical_time_step
-from rockwear.run import parameters
+from rockwear.run import parameters, servers
 from rockwear.scenes import yade_scene
 
 PARAMETERS = [
@@ -174,7 +174,8 @@ def build(a):
     for position, mass, inertia in zip(a.tool_positions.tolist(), *lumped(np.full(len(a.touched), a.tool_radius), 2)):
         O.bodies.append(particle(position, a.tool_radius, "steel", yade_scene.TOOL_MASK, mass, inertia))
         O.bodies[-1].state.blockedDOFs = "xyzXYZ"
-    yade_scene.put_loop(kn=1.0, kt=1.0, mu=1.0, tool=(a.tool_kn, a.tool_kt, 1e3))
+    yade_scene.put_loop(rock=SimpleNamespace(kn=1.0, kt=1.0, mu=1.0),
+                        tool=SimpleNamespace(kn=a.tool_kn, kt=a.tool_kt, mu=1e3))
     O.dt = 0.0
     for i, j in a.bonds.tolist():
         utils.createInteraction(i, j)
@@ -196,11 +197,8 @@ def build(a):
 
 def particle(position, radius, material, mask, mass, inertia):
     """A disc of the plane, or a sphere."""
-    if len(position) == 2:
-        return yade_scene.finite_disc(position, radius, material=material, mask=mask, mass=mass, inertia=inertia)
-    body = utils.sphere(position, radius, material=material, mask=mask)
-    body.state.mass, body.state.inertia = mass, (inertia,) * 3
-    return body
+    make = yade_scene.finite_disc if len(position) == 2 else yade_scene.sphere
+    return make(position, radius, material=material, mask=mask, mass=mass, inertia=inertia)
 
 
 def perturb(a, step):
@@ -279,6 +277,7 @@ def examine(name, particles, bisect):
 
 def main():
     """Examine every case; write summary.json."""
+    servers.close()
     v = SimpleNamespace(**parameters.read(PARAMETERS, sys.argv[1:]))
     cases = {}
     for name in CASES:

@@ -56,7 +56,7 @@ def exact(polygon, volume):
 def particles(polygon, size, seed, removal):
     """The tooth filled with particles of a mean diameter."""
     return Tool(vertices=polygon, radius_min=(1 - SPREAD) * size / 2, radius_max=(1 + SPREAD) * size / 2, seed=seed,
-                removal=removal, material=STEEL)
+                removal=removal, density=STEEL.density)
 
 
 def rub(tool, volume, portion=1 / 8):
@@ -79,24 +79,24 @@ def unexplained(tool):
     return balance["unexplained"] / balance["archard"]
 
 
-def face(polygon):
-    """The exact flat face: its height (m) along DOWN, the direction along it, and its ends (m) in that direction."""
-    target, height = exact(polygon, WORN)
+def face(polygon, volume):
+    """The exact flat face after `volume` (m3) of wear: its height (m) along DOWN, the direction along it, and its ends (m) in that direction."""
+    target, height = exact(polygon, volume)
     along = np.array([DOWN[1], -DOWN[0]])
     return height, along, *sorted(float(p @ along) for p in target if abs(p @ DOWN - height) < 1e-9)
 
 
-def flat_of_segments(polygon, size, strip=STRIP):
+def flat_of_segments(polygon, size, strip=STRIP, volume=WORN):
     """As `flat`, for segments: the furthest segment wears."""
     boundary = FacetTool.of_outline(polygon, segment=size, density=STEEL.density).boundary
-    visits = math.ceil(WORN / (size**2 / 8))
+    visits = math.ceil(volume / (size**2 / 8))
     for _ in range(visits):
         reach = np.where(boundary.fixed, -np.inf, (boundary.vertices @ DOWN)[boundary.facets].mean(axis=1))
-        boundary.wear(np.where(np.arange(len(reach)) == np.argmax(reach), WORN / visits, 0.0))
-    height, along, low, high = face(polygon)
+        boundary.wear(np.where(np.arange(len(reach)) == np.argmax(reach), volume / visits, 0.0))
+    height, along, low, high = face(polygon, volume)
     across, reach = boundary.vertices @ along, boundary.vertices @ DOWN
     off = reach[(across > low + strip) & (across < high - strip) & (abs(reach - height) < strip)] - height
-    return worn_segments(boundary, float(np.sqrt(np.mean(off**2))), WORN)
+    return worn_segments(boundary, float(np.sqrt(np.mean(off**2))), volume)
 
 
 def worn_segments(boundary, off, volume):
@@ -110,7 +110,7 @@ def flat(polygon, size, seed, strip=STRIP):
     tool = particles(polygon, size, seed, "volume")
     rub(tool, WORN)
     alive = tool.erosion.alive
-    height, along, low, high = face(polygon)
+    height, along, low, high = face(polygon, WORN)
     across, reach = tool.positions[alive] @ along, tool.positions[alive] @ DOWN + tool.radii[alive]
     places = np.arange(low + strip, high - strip, strip / 2)
     off = np.array([reach[abs(across - place) < strip / 2].max() - height for place in places])

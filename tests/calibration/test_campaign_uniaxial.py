@@ -10,7 +10,7 @@ from calibration.benchmarks import loading_speed
 from calibration.campaigns import uniaxial_tables
 from calibration.validation import uniaxial as uniaxial_validation
 
-TINY = dict(width=0.03, height=0.02, radius_min=1e-3, radius_max=1.5e-3, kt=4e9, Rt=0.1e6)
+TINY = dict(width=0.03, height=0.02, radius_min=1e-3, radius_max=1.5e-3, kt=4e9, Rt=0.1e6, speed=0.2)
 
 
 def test_a_campaign_keeps_what_is_finished_and_shows_it(tmp_path, monkeypatch, capsys):

@@ -27,7 +27,7 @@ def test_half_the_size_is_half_the_error():
 
 
 def test_segments_end_at_the_same_outline():
-    coarse, fine = (flat_of_segments(POLYGON, size, strip=1.4e-3) for size in (0.8e-3, 0.4e-3))
+    coarse, fine = (flat_of_segments(POLYGON, size, strip=1.4e-3, volume=5e-6) for size in (0.8e-3, 0.4e-3))
     assert fine.off < 0.1 * 0.4e-3 and coarse.off > 1.5 * fine.off
     assert max(abs(row.unexplained) for row in (coarse, fine)) < 1e-9
 

@@ -1,0 +1,52 @@
+"""Runs that campaigns, benchmarks and validations start: kept, repeated or failed; their parameters are accepted."""
+import json
+
+import pytest
+
+from calibration.benchmarks import __main__ as bench
+from calibration.benchmarks import loading_speed, particle_size
+from calibration.campaigns import sharp_and_worn, tip_temperature, uniaxial, wear
+from calibration.campaigns.runs import RunFailed, Runs, finished
+from calibration.validation import __main__ as validation
+
+from tests.running import ROOT, run_script
+
+OWN_COMMAND_LINE = "yade_scripts/two_disc.py", "calibration/benchmarks/stability_runs.py"
+
+
+def started():
+    """(script, {parameter: value}) of every run with parameters of its own."""
+    for section in validation.SECTIONS:
+        yield from section.runs.values()
+    yield from ((script, {**wear.COARSE, **values}) for script, values in wear.CASES.values())
+    for values in [*bench.jobs().values(), sharp_and_worn.CUT, particle_size.CUT]:
+        yield wear.TOOTH, values
+    for cases, common, _ in uniaxial.CAMPAIGNS.values():
+        yield from ((uniaxial.SCRIPT, {**common, **values, "test": "tension"}) for values in cases.values())
+    yield from ((uniaxial.SCRIPT, {**uniaxial.SMALL, **values, "speed": loading_speed.SPEEDS[0]})
+                for values in uniaxial.ROCKS.values())
+    for script, values, _ in tip_temperature.SCENES.values():
+        yield from ((script, {**values, **tip_temperature.QUICK, **change})
+                    for choices in tip_temperature.OPEN.values() for change in choices.values())
+
+
+def test_every_run_that_is_started_has_parameters_that_its_scene_takes(tmp_path):
+    runs, checks = tmp_path / "runs.json", tmp_path / "checks.json"
+    cases = [(str(ROOT / script), values) for script, values in started() if script not in OWN_COMMAND_LINE]
+    runs.write_text(json.dumps(cases), encoding="utf-8")
+    done = run_script(ROOT / "tests/calibration/scripts/accepted.py", str(runs), str(checks))
+    assert done.code == 0, done.stderr
+    assert len(cases) > 150 and json.loads(checks.read_text(encoding="utf-8")) == []
+
+
+def test_a_finished_run_is_kept_only_for_the_same_values(tmp_path):
+    assert not finished(tmp_path, {})
+    stored = {"exit_code": 0, "files": {}, "parameters": {"kn": 2e10, "heat": False, "test": "tension"}}
+    (tmp_path / "summary.json").write_text(json.dumps(stored), encoding="utf-8")
+    assert finished(tmp_path, {"kn": "2e10", "heat": "false", "test": "tension"})
+    assert not finished(tmp_path, {"kn": 1e10}) and not finished(tmp_path, {"kt": 1e10})
+
+
+def test_a_run_that_fails_says_so(tmp_path):
+    with Runs(tmp_path) as runs, pytest.raises(RunFailed, match="bad ended with 2: error: sped = 1"):
+        runs.start("bad", "yade_scripts/uniaxial.py", sped=1).result()
