@@ -1,8 +1,8 @@
-"""Closed boundaries of facets: segments in the plane, triangles in space; their measures, checks, refinement.
+"""Closed boundaries of facets: segments in the plane, triangles in space; measures, checks, refinement.
 
-A boundary is vertices (n, d) in m and facets (m, d) of vertex numbers, d = 2 or 3. The body lies to the left of a
-segment's direction; a triangle's corners run counter-clockwise seen from outside. In the plane areas are lengths and
-volumes are areas, both per metre of thickness.
+A boundary is vertices (n, d) in m and facets (m, d) of vertex numbers, d = 2 or 3. The body is on the left of a
+directed segment; the corners of a triangle are in counter-clockwise order seen from outside. In the plane areas are
+lengths and volumes are areas, both per metre of thickness.
 """
 import heapq
 import math
@@ -16,11 +16,11 @@ from rockwear.kernels.checks import positive, require
 from rockwear.kernels.polygon import check_polygon, inside, nearest_on_edges, signed_distance
 
 PAIRS = 1_000_000
-"""Most pairs of points and triangles looked at together in `distance`: some 500 MB of temporaries if all were near."""
+"""Most pairs of points and triangles processed together in `distance`: some 500 MB of temporaries if all are near."""
 
 
 def cross(a, b):
-    """(n, 3) vector products of the rows of a and b (n, 3): np.cross without its cost for other shapes."""
+    """(n, 3) vector products of the rows of a and b (n, 3); faster than np.cross, equal to the last bit."""
     (ax, ay, az), (bx, by, bz) = a.T, b.T
     product = np.empty(a.shape)
     product[:, 0], product[:, 1], product[:, 2] = ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
@@ -28,7 +28,7 @@ def cross(a, b):
 
 
 def area_vectors(vertices, facets):
-    """(m, d) outward normal of each facet times its area."""
+    """(m, d) m2 (in the plane: m), outward normal of each facet times its area."""
     first = vertices[facets[:, 0]]
     along = vertices[facets[:, 1]] - first
     if vertices.shape[1] == 2:
@@ -37,10 +37,10 @@ def area_vectors(vertices, facets):
 
 
 def volume(vertices, facets, origin=None):
-    """Enclosed volume, the sum of det(corners) / d! over the facets: positive if the normals look outwards.
+    """Enclosed volume (m3; in the plane m2), sum of det(corners) / d! over the facets; positive for outward normals.
 
-    Of facets that are not closed it is the volume between them and `origin` (d,): only differences count, of facets with
-    one rim.
+    For an open set of facets it is the volume between them and `origin` (d,) m: use only differences between sets with
+    the same rim.
     """
     corners = vertices[facets]
     corners = corners - (corners.mean(axis=(0, 1)) if origin is None else origin)
@@ -57,10 +57,10 @@ def altitudes(vertices, facets, areas=None):
 
 
 def ridges(facets):
-    """(k, d - 1) what two facets share, one row each time a facet has it, in the facet's own sense.
+    """(k, d - 1) oriented edges (in the plane: ends) of all facets; each is listed once for each facet.
 
-    Edges (i, j) of triangles as they are run through; of a segment (i, j) its ends, -1 - i for the beginning and j for
-    the end, so that the opposite sense is the opposite row in both cases.
+    Edges (i, j) of triangles in the order of their corners; of a segment (i, j) its ends, -1 - i for the first and j
+    for the second, so that _opposite reverses the orientation in both cases.
     """
     if facets.shape[1] == 2:
         return np.concatenate([-1 - facets[:, :1], facets[:, 1:]])
@@ -72,18 +72,19 @@ def _opposite(rows):
 
 
 def check_boundary(vertices, facets, name="boundary"):
-    """(vertices, facets) as float and int arrays, vertices that no facet uses left out.
+    """(vertices, facets) as float and int arrays, without unused vertices.
 
     Raises ParameterError (under `name`) unless the vertices are finite, no facet is degenerate, every edge (in the
-    plane: end) of a facet is that of exactly one other, run through in the opposite sense, the volume is positive, no two
-    facets run through each other, and all hang together.
+    plane: end) of a facet belongs to exactly one other with the opposite orientation, the volume is positive, no two
+    facets intersect, and the surface is connected.
     """
     vertices, facets = np.array(vertices, float), np.array(facets, int)
     d = vertices.shape[1] if vertices.ndim == 2 else 0
     require(d in (2, 3) and facets.ndim == 2 and facets.shape[1] == d, name,
             f"{vertices.shape} vertices and {facets.shape} facets", "(n, 2) and (m, 2), or (n, 3) and (m, 3)")
     require(len(facets) > d, name, f"{len(facets)} facets", f"at least {d + 1} facets")
-    require(0 <= facets.min() and facets.max() < len(vertices), name, f"vertex {facets.max()}", "made of known vertices")
+    known = 0 <= facets.min() and facets.max() < len(vertices)
+    require(known, name, f"vertex {facets.max()}", "made of known vertices")
     require(np.isfinite(vertices).all(), name, f"{len(vertices)} vertices", "finite", "m")
     used, facets = np.unique(facets, return_inverse=True)
     vertices, facets = vertices[used], facets.reshape(-1, d)
@@ -92,15 +93,15 @@ def check_boundary(vertices, facets, name="boundary"):
     require(len(flat) == 0, name, f"facet {flat[0] if len(flat) else ''}", "free of degenerate facets (no area)")
     rows = ridges(facets)
     distinct, count = np.unique(rows, axis=0, return_counts=True)
-    ways = {tuple(row) for row in distinct.tolist()}
-    single = [row for row in distinct.tolist() if tuple(_opposite(np.array([row]))[0].tolist()) not in ways]
+    senses = {tuple(row) for row in distinct.tolist()}
+    single = [row for row in distinct.tolist() if tuple(_opposite(np.array([row]))[0].tolist()) not in senses]
     turned = int((count > 1).sum())
-    require(turned == 0, name, f"{turned} edges run through twice in one sense",
+    require(turned == 0, name, f"{turned} edges twice in one sense",
             "of one orientation: some facets are flipped or doubled")
     require(not single, name, f"{len(single)} open edges", "closed: it has holes")
     require(volume(vertices, facets) > 0, name, f"{len(facets)} facets", "oriented with its normals outwards")
     through = len(crossings(vertices, facets))
-    require(through == 0, name, f"{through} crossings", "free of facets that run through each other")
+    require(through == 0, name, f"{through} crossings", "free of facets that intersect")
     shared = facets.ravel(), np.roll(facets, 1, axis=1).ravel()
     pieces, _ = connected_components(coo_matrix((np.ones(facets.size), shared), 2 * [len(vertices)]), directed=False)
     require(pieces == 1, name, f"{pieces} separate surfaces", "one piece without a cavity")
@@ -108,13 +109,13 @@ def check_boundary(vertices, facets, name="boundary"):
 
 
 def crossings(vertices, facets, moved=None):
-    """(k, 4) or (k, 5) the vertices of each place where facets that have no vertex in common run through each other: in
-    the plane pairs of segments that meet, in space an edge that pierces a triangle. moved: (n,) bool, look only (in
-    space) where one of these takes part."""
+    """(k, 4) or (k, 5) vertices of intersections between facets without a common vertex: in the plane pairs of
+    segments, in space an edge and the triangle that it pierces. moved: (n,) bool; in space only facets with one of
+    these vertices are checked."""
     if vertices.shape[1] == 2:
         return _meeting(vertices, facets)
     edges = ridges(facets)
-    edges = edges[edges[:, 0] < edges[:, 1]]  # each is there in both senses
+    edges = edges[edges[:, 0] < edges[:, 1]]  # each is listed in both orientations
     if moved is None:
         return _piercing(vertices, edges, facets)
     of_edge, of_facet = moved[edges].any(axis=1), moved[facets].any(axis=1)
@@ -125,7 +126,7 @@ def crossings(vertices, facets, moved=None):
 def _meeting(vertices, facets):
     middle = vertices[facets].mean(axis=1)
     along = vertices[facets[:, 1]] - vertices[facets[:, 0]]
-    # Two segments that meet have middles no further apart than the longest is long.
+    # The middles of intersecting segments are at most the length of the longest apart.
     reach = float(np.linalg.norm(along, axis=1).max())
     i, j = cKDTree(middle).query_pairs(reach * (1 + 1e-9), output_type="ndarray").T
     apart = (facets[i][:, :, None] != facets[j][:, None, :]).all(axis=(1, 2))
@@ -148,7 +149,7 @@ def _piercing(vertices, edges, facets):
     i, j = _near(vertices, edges, facets)
     start, end = vertices[edges[:, 0]], vertices[edges[:, 1]]
     corner, normal = vertices[facets[:, 0]], 2 * area_vectors(vertices, facets)
-    # Facets of one plane are on neither side of each other, whatever the last digits say.
+    # Coplanar facets are on neither side of each other, in spite of round-off.
     least = 1e-9 * np.linalg.norm(normal, axis=1)[j] * np.linalg.norm(end - start, axis=1)[i]
     corner, normal = corner.take(j, axis=0), normal.take(j, axis=0)
     above, below = (np.einsum("ni,ni->n", normal, ends.take(i, axis=0) - corner) for ends in (start, end))
@@ -163,14 +164,15 @@ def _piercing(vertices, edges, facets):
 
 
 def _near(vertices, edges, facets):
-    """Numbers (2, k) of edges and facets whose surrounding spheres meet, all facets of an octave taken as its largest."""
+    """Numbers (2, k) of edges and facets whose bounding spheres intersect; facets of an octave with the largest one."""
     def spheres(rows):
         middle = vertices[rows].mean(axis=1)
         return middle, np.linalg.norm(vertices[rows] - middle[:, None], axis=2).max(axis=1)
 
     def within(points, others, reach):
-        """Numbers of the points in the box around the others: most calls are about a few places, which saves the search."""
-        return ((points >= others.min(axis=0) - reach) & (points <= others.max(axis=0) + reach)).all(axis=1).nonzero()[0]
+        """Numbers of the points near the bounding box of the others: most calls concern a few facets."""
+        low, high = others.min(axis=0) - reach, others.max(axis=0) + reach
+        return np.flatnonzero(((points >= low) & (points <= high)).all(axis=1))
 
     (middle, half), (centre, radius) = spheres(edges), spheres(facets)
     octave, numbers = np.floor(np.log2(radius)), [np.empty((2, 0), int)]
@@ -188,7 +190,7 @@ def _near(vertices, edges, facets):
 
 
 def nearest_on_triangle(point, triangle):
-    """The point (3,) of a triangle (3, 3) that is nearest to `point` (3,)."""
+    """Point (3,) m of a triangle (3, 3) m nearest to `point` (3,) m."""
     a, b, c = triangle
     normal = np.cross(b - a, c - a)
     foot = point - normal * (normal @ (point - a)) / (normal @ normal)
@@ -200,14 +202,15 @@ def nearest_on_triangle(point, triangle):
 
 
 def distance(points, vertices, facets):
-    """(n,) m from each of the points (n, d) to the nearest point of any facet."""
+    """(n,) m, distance of points (n, d) m from the nearest point of any facet."""
     points, corners = np.asarray(points, float), np.asarray(vertices, float)[facets]
     if points.shape[1] == 2:
-        return np.linalg.norm(points - nearest_on_edges(points, corners[:, 0], corners[:, 1] - corners[:, 0])[0], axis=1)
+        foot, _ = nearest_on_edges(points, corners[:, 0], corners[:, 1] - corners[:, 0])
+        return np.linalg.norm(points - foot, axis=1)
     middle = corners.mean(axis=1)
     reach = np.linalg.norm(corners - middle[:, None], axis=2).max()
     tree, some = cKDTree(middle), max(1, PAIRS // len(corners))
-    # The nearest corner is no nearer than the nearest point.
+    # The distance of the nearest corner is an upper bound.
     within = cKDTree(corners.reshape(-1, 3)).query(points)[0] + reach * (1 + 1e-9)
     squared = np.full(len(points), np.inf)
     for low in range(0, len(points), some):
@@ -218,8 +221,8 @@ def distance(points, vertices, facets):
 
 
 def _squared_distances(points, triangles):
-    """(n,) m2 between points (n, 3) and triangles (n, 3, 3): that of the plane where the foot lies between the sides, else
-    that of the nearest side."""
+    """(n,) m2 between points (n, 3) and triangles (n, 3, 3): from the plane where the foot is inside the triangle, else
+    from the nearest side."""
     sides = np.roll(triangles, -1, axis=1) - triangles
     normal = np.cross(sides[:, 0], sides[:, 1])
     normal /= np.linalg.norm(normal, axis=1)[:, None]
@@ -231,17 +234,18 @@ def _squared_distances(points, triangles):
 
 
 def segments(polygon):
-    """The boundary of a polygon (k, 2): its own corners, a segment a side."""
+    """(vertices, facets) of a polygon (k, 2) m, one segment for each side. Raises as check_polygon."""
     corners = check_polygon(polygon)
     number = np.arange(len(corners))
     return corners, np.column_stack([number, np.roll(number, -1)])
 
 
 def prism(polygon, width, size):
-    """A polygon (k, 2) in x and y drawn out to `width` m along z, centred at z = 0: triangles of about `size` m.
+    """(vertices, facets) of a polygon (k, 2) m in x and y extruded to `width` m along z about z = 0; triangles of about
+    `size` m.
 
-    Corners of the polygon nearer than half the size to one another are merged, but for sharp ones (40 degrees).
-    Raises ParameterError for a size too coarse for the polygon, or not positive.
+    Corners of the polygon less than half the size apart are merged, except sharp ones (40 degrees). Raises
+    ParameterError for a width or size that is not positive, a size too coarse for the polygon, and as check_polygon.
     """
     rim = _in_order(*refine(*segments(_thinned(check_polygon(polygon), positive("size", size, "m"))), size))
     k, layers = len(rim), max(1, math.ceil(positive("width", width, "m") / size))
@@ -261,7 +265,7 @@ def prism(polygon, width, size):
 
 
 def _thinned(polygon, size):
-    """The polygon without corners that stand nearer than half of `size` to the last, unless they are sharp."""
+    """The polygon without corners less than half of `size` from the last, except sharp ones."""
     along = np.roll(polygon, -1, axis=0) - polygon
     along /= np.linalg.norm(along, axis=1)[:, None]
     sharp = np.einsum("ij,ij->i", along, np.roll(along, 1, axis=0)) < math.cos(math.radians(40))
@@ -274,7 +278,7 @@ def _thinned(polygon, size):
 
 
 def _in_order(vertices, facets):
-    """Corners (k, 2) of the one polygon that segments make."""
+    """Corners (k, 2) of the polygon formed by the segments."""
     following, loop = dict(facets.tolist()), [0]
     while following[loop[-1]] != 0:
         loop.append(following[loop[-1]])
@@ -282,7 +286,7 @@ def _in_order(vertices, facets):
 
 
 def _fill(rim, size):
-    """Triangles of the polygon `rim` and of points inside it, `size` apart: (n, 2) and (m, 3)."""
+    """Points (n, 2), `rim` and a grid of spacing `size` inside it, and their triangles (m, 3)."""
     low, high = rim.min(axis=0), rim.max(axis=0)
     x, y = np.meshgrid(np.arange(low[0], high[0], size), np.arange(low[1], high[1], size * math.sqrt(0.75)))
     x[1::2] += 0.5 * size
@@ -297,14 +301,15 @@ def _fill(rim, size):
     triangles = triangles[inside(points[triangles].mean(axis=1), rim)]
     sides = {(a, b) for t in triangles.tolist() for a, b in zip(t, t[1:] + t[:1])}
     k = len(rim)
-    require(all((i, (i + 1) % k) in sides for i in range(k)), "size", size, "finer: its triangles cut the outline", "m")
+    require(all((i, (i + 1) % k) in sides for i in range(k)), "size", size, "finer: its triangles cut the polygon", "m")
     return points, triangles
 
 
 def refine(vertices, facets, size):
-    """Cut edges in halves, the longest first, until none is longer than `size`: m, or a function of a point (d,) -> m.
+    """(vertices, facets) with edges bisected, the longest first, until none is longer than `size`: m, or a function of
+    a point (d,) -> m.
 
-    A cut divides both facets at an edge, so that the boundary stays closed and its shape the same.
+    Both facets at an edge are divided: the boundary stays closed and its shape the same.
     """
     wanted = size if callable(size) else lambda point: size
     points, facets = [np.asarray(p, float) for p in vertices], [tuple(f) for f in np.asarray(facets).tolist()]

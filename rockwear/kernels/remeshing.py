@@ -1,8 +1,7 @@
-"""Remeshing of a closed boundary of facets whose shape changes: facets that crowd are given to where they are missed.
+"""Remeshing of a closed boundary of facets whose shape changes. (Ours.)
 
-The numbers of vertices and of facets stay. A vertex goes where an edge has become short, and is put in the middle of
-the longest edge; in space the longest side of a flat triangle is turned instead. Neither changes the volume. A feather
-edge breaks off.
+The numbers of vertices and facets stay. A short edge is collapsed and its vertex inserted in the middle of the longest
+edge; in space the longest side of a flat triangle is flipped instead. Both keep the volume. A feather edge breaks off.
 """
 import numpy as np
 
@@ -10,44 +9,44 @@ from rockwear.kernels.boundary import altitudes, area_vectors, check_boundary, c
 from rockwear.kernels.checks import ParameterError
 
 CROWDED = 0.3
-"""A facet crowds where its smallest altitude has fallen to this part of what it was at first."""
+"""A facet is crowded if its smallest altitude is below this fraction of the initial one."""
 OFF = 0.02
-"""The surface leaves none of its old vertices by more than this part of a facet's size, unless facets are TIGHT."""
+"""Largest distance of the new surface from its old vertices, over the size of a facet, unless facets are TIGHT."""
 TIGHT = 0.1
-"""A facet so small a part of what it was may be relieved at the cost of an edge: that is finer than the facets."""
+"""Below this fraction of its initial altitude a facet may be removed at the cost of an edge finer than the facets."""
 RELIEF = 0.95
-"""An operation must bring the sum of the reciprocals of these parts, over the facets it changes, down to so much of it."""
+"""Largest ratio of the sums of reciprocal fractions, over the changed facets, after and before an operation."""
 WORTH = 1.3
-"""A vertex goes elsewhere if facets there stay larger than those it leaves by this factor."""
+"""Least ratio of the facets where a vertex is inserted to those from which it is removed."""
 EDGE = 0.13
-"""Two equal facets make an edge where they meet at more than 40 degrees: they look across their mean normal with
-tan^2(20 degrees) of the weight with which they look along it."""
+"""Two equal facets form an edge if their normals are more than 40 degrees apart: the sum of a n n^T then has a second
+eigenvalue of more than tan^2(20 degrees) times the first."""
 PLANE = 1e-8
-"""Protected facets are in one plane where they look across their mean normal with less than tan^2(1e-4) of the weight."""
+"""Fixed facets are coplanar if the second eigenvalue is less than tan^2(1e-4) times the first."""
 TURN = 0.5
-"""No facet turns by more than 60 degrees, cosine 0.5, at once."""
+"""Least cosine of the rotation of a facet in one operation: 60 degrees."""
 SHARP = -0.9
-"""An edge between facets whose normals have less than this cosine, 154 degrees, breaks off, unless such were there at
-first."""
+"""An edge between facets whose normals have less than this cosine (154 degrees) is a feather edge and breaks off,
+unless the initial boundary has sharper ones."""
 BLUNT = 0.8
-"""By this part of the way back to between the vertices beside it."""
+"""Fraction of the way to the middle between the adjacent vertices by which a feather edge breaks off."""
 AGAIN = 0.9
-"""A facet that could not be relieved is tried again when it has become so much smaller, or one beside it another."""
+"""A facet that could not be remeshed is tried again if smaller by this factor, or after a change beside it."""
 OPERATIONS = 100
-"""So many at one time; what still crowds waits for the next."""
+"""Most operations at one time."""
 SHAPE = "vertices", "facets", "fixed", "size", "place", "pending", "refused"
 CONNECTIONS = "joined", "around", "seam", "beside", "ways"
 
 
 class Mesh:
-    """A closed boundary of facets, parts of which are fixed.
+    """A closed boundary of facets with a fixed part.
 
     vertices: (n, d) m; facets: (m, d), normals outwards; fixed: (m,) bool, facets whose plane (line) stays.
 
-    `size` (m,) m is the smallest altitude that a facet had at first, `place` (m,) the number of the first facet on whose
-    part of the surface it lies, `pending` (m,) m3 what is to be worn off it. `refused` (m,) is its altitude, as a part of
-    its size, when it could not be relieved.
-    Raises ParameterError for a boundary that is open, folded, or not oriented outwards, or fixed altogether.
+    `size` (m,) m is the initial smallest altitude of a facet, `place` (m,) the number of the initial facet on whose
+    part of the surface it lies, `pending` (m,) m3 the volume still to be worn off it, `refused` (m,) its altitude over
+    size at the last failed operation, `joined` (k, 2) adjacent facets, `around` (j, 2) adjacent vertices.
+    Raises ParameterError as check_boundary, and if all facets are fixed.
     """
 
     def __init__(self, *, vertices, facets, fixed=None):
@@ -64,11 +63,12 @@ class Mesh:
         self.sharp = min(SHARP, self.bends(area_vectors(self.vertices, self.facets)).min() - 0.01)
 
     def _connect(self):
-        """What follows from which facets there are."""
+        """Connectivity of the present facets."""
         d, facets = self.dimension, self.facets
         self.joined = joined(facets)
         n = len(self.vertices)
-        codes = np.unique(np.concatenate([n * facets[:, a] + facets[:, b] for a in range(d) for b in range(d) if a != b]))
+        codes = np.unique(np.concatenate([n * facets[:, a] + facets[:, b]
+                                          for a in range(d) for b in range(d) if a != b]))
         self.around = np.column_stack([codes // n, codes % n])
         pairs = facets[self.joined]
         common = (pairs[:, :, :, None] == pairs[:, ::-1, None, :]).any(axis=3)
@@ -76,25 +76,25 @@ class Mesh:
         self.ways = self._ways_left()
 
     def _ways_left(self):
-        """(n, d, d) projection of each vertex's motion on what its fixed facets leave it: all for a vertex of none,
-        their common plane or line for one on them, nothing for a corner of them."""
+        """(n, d, d) projection of vertex motions on the directions in which the fixed facets keep their planes: the
+        identity without fixed facets, their common plane or line, zero at their corners."""
         areas = area_vectors(self.vertices, self.facets) * self.fixed[:, None]
         size = np.maximum(np.linalg.norm(areas, axis=1), np.finfo(float).tiny)
-        values, frames = np.linalg.eigh(self.looks(areas / size[:, None], size))
+        values, frames = np.linalg.eigh(self.normal_tensors(areas / size[:, None], size))
         return np.einsum("nij,nj,nkj->nik", frames, values <= PLANE * values[:, -1:], frames)
 
-    def looks(self, normals, size):
-        """(n, d, d) sum of area n n^T over the facets at each vertex: where its facets look."""
+    def normal_tensors(self, normals, size):
+        """(n, d, d) m2, sum of a n n^T over the facets at each vertex. normals n: (m, d); size a: (m,) areas."""
         d = self.dimension
-        looks = np.repeat((size[:, None, None] * normals[:, :, None] * normals[:, None, :]).reshape(-1, d * d), d, axis=0)
-        return self.sum_at_vertices(looks).reshape(-1, d, d)
+        tensors = (size[:, None, None] * normals[:, :, None] * normals[:, None, :]).reshape(-1, d * d)
+        return self.sum_at_vertices(np.repeat(tensors, d, axis=0)).reshape(-1, d, d)
 
     def sum_at_vertices(self, rows):
-        """(n, k) sums of rows (m d, k), one for each corner of each facet."""
+        """(n, k) sums over the corners of facets, given as rows (m d, k)."""
         return np.column_stack([np.bincount(self.facets.ravel(), column, len(self.vertices)) for column in rows.T])
 
     def neighbours(self):
-        """[{facets that have a vertex in common with facet k}] by k."""
+        """[set of the facets that share a vertex with facet k] by k."""
         at = [set() for _ in self.vertices]
         for number, facet in enumerate(self.facets.tolist()):
             for vertex in facet:
@@ -103,25 +103,26 @@ class Mesh:
                 for number, facet in enumerate(self.facets.tolist())]
 
     def bends(self, areas):
-        """(k,) cosine between the normals of the joined facets, from normals (m, d) of any length."""
+        """(k,) cosine between the normals of joined facets. areas: (m, d), normals of any length."""
         size = np.linalg.norm(areas, axis=1)
         one, other = self.joined.T
-        return np.einsum("ni,ni->n", areas[one], areas[other]) / np.maximum(size[one] * size[other], np.finfo(float).tiny)
+        scale = np.maximum(size[one] * size[other], np.finfo(float).tiny)
+        return np.einsum("ni,ni->n", areas[one], areas[other]) / scale
 
     def slope(self, vertices, normals):
-        """(k,) m by which the second of the joined facets rises over the first one's plane: below zero at an edge that
-        stands out, above it in a notch. normals (m, d), or m times their length."""
+        """(k,) m, rise of the second of joined facets over the plane of the first: negative at a convex edge, positive
+        in a notch. normals: (m, d), of length 1 (else the rise is multiplied by their length)."""
         rise = vertices[self.beside[:, 1]] - vertices[self.seam[:, 0]]
         return np.einsum("ni,ni->n", rise, normals[self.joined[:, 0]])
 
     def notches(self, vertices, normals):
-        """(k,) whether the joined facets, with these normals (m, d) of any length, all but close a notch."""
+        """(k,) bool, whether joined facets nearly close a notch. normals: (m, d), of any length."""
         return (self.bends(normals) < SHARP) & (self.slope(vertices, normals) > 0)
 
     # ---- operations
 
     def even_out(self):
-        """Relieve facets that crowd, the worst first, until none does or none can be relieved. -> whether any was."""
+        """Remesh crowded facets, the smallest first, until none is left or none can be. -> whether facets changed."""
         done = False
         for _ in range(OPERATIONS):
             part = altitudes(self.vertices, self.facets) / self.size
@@ -129,14 +130,14 @@ class Mesh:
             worst = int(np.argmin(waiting))
             if waiting[worst] == np.inf:
                 break
-            if self._relieve(worst, part[worst]):
+            if self._remesh(worst, part[worst]):
                 done = True
             else:
                 self.refused[worst] = part[worst]
         return done
 
     def blunt(self):
-        """Let feather edges break off: their vertices go back to between those beside them. -> m3 that is lost."""
+        """Break off feather edges: their vertices move towards those beside them. -> m3 lost."""
         lost = 0.0
         for _ in range(OPERATIONS):
             areas = area_vectors(self.vertices, self.facets)
@@ -149,7 +150,7 @@ class Mesh:
             aim = np.zeros_like(self.vertices)
             np.add.at(aim, seam, self.vertices[beside].mean(axis=1)[:, None])
             way = BLUNT * np.einsum("nij,nj->ni", self.ways, aim / np.maximum(count, 1) - self.vertices) * (count > 0)
-            # All of them at once, else as many as can be.
+            # All at once, else one by one where possible.
             gone = [self._break_off(way)] if way.any() else []
             if gone == [0.0]:
                 gone = [self._break_off(way * (np.arange(len(way)) == k)[:, None]) for k in np.flatnonzero(count)]
@@ -159,12 +160,13 @@ class Mesh:
         return lost
 
     def _break_off(self, way):
-        """Move vertices by `way` (n, d) m unless that would fold something. -> m3 that is lost."""
+        """Move vertices by `way` (n, d) m unless facets would fold. -> m3 lost."""
         moved = way.any(axis=1)
         fresh = self.vertices + way
         areas = area_vectors(fresh, self.facets)
         notch = self.notches(fresh, areas)
-        if notch[moved[self.seam].any(axis=1) | moved[self.beside].any(axis=1)].any() or len(crossings(fresh, self.facets, moved)):
+        concerned = moved[self.seam].any(axis=1) | moved[self.beside].any(axis=1)
+        if notch[concerned].any() or len(crossings(fresh, self.facets, moved)):
             return 0.0
         star, origin, old = moved[self.facets].any(axis=1), fresh.mean(axis=0), self.vertices
         before = volume(self.vertices, self.facets[star], origin)
@@ -174,16 +176,16 @@ class Mesh:
             self.vertices, lost = old, 0.0
         return lost
 
-    def _relieve(self, facet, part):
-        """Take away the facet's shortest side, or turn its longest. -> whether that is sound, else nothing has changed."""
+    def _remesh(self, facet, part):
+        """Collapse the shortest side of a facet, or flip its longest. -> whether the mesh is sound, else unchanged."""
         corners = self.facets[facet]
         sides = self.vertices[np.roll(corners, -1)] - self.vertices[corners]
         length = np.linalg.norm(sides, axis=1)
         shortest, longest = int(np.argmin(length)), int(np.argmax(length))
         ends = corners[shortest], corners[(shortest + 1) % self.dimension]
         flat = self.dimension == 3 and part * self.size[facet] < 0.5 * length[shortest]
-        ways = [lambda: self._turn(facet, longest)] if flat else []
-        ways += [lambda keep=keep: self._carry(keep, ends[0] + ends[1] - keep, part) for keep in self._ranked(ends)]
+        ways = [lambda: self._flip(facet, longest)] if flat else []
+        ways += [lambda keep=keep: self._collapse(keep, ends[0] + ends[1] - keep, part) for keep in self._ranked(ends)]
         before = {name: getattr(self, name).copy() for name in SHAPE}
         connections = {name: getattr(self, name) for name in CONNECTIONS}
         for way in ways:
@@ -196,11 +198,14 @@ class Mesh:
         return False
 
     def _ranked(self, ends):
-        """The ends of an edge, first the one that is to stay: that with the fewest ways, then a corner, then an edge."""
-        return sorted(ends, key=lambda vertex: (np.trace(self.ways[vertex]).round(), *-self._sharpness(vertex).round(2)))
+        """Ends of an edge, the one to keep first: that with fewer degrees of freedom, then a corner, then an edge."""
+        def rank(vertex):
+            return np.trace(self.ways[vertex]).round(), *-self._sharpness(vertex).round(2)
 
-    def _carry(self, keep, gone, part):
-        """Take vertex `gone` away to the vertex `keep` beside it, and put it into the longest edge."""
+        return sorted(ends, key=rank)
+
+    def _collapse(self, keep, gone, part):
+        """Collapse the edge from vertex `gone` to `keep`, and insert `gone` in the middle of the longest edge."""
         if not self._simple(keep, gone):
             return False
         has_keep, has_gone = ((self.facets == vertex).any(axis=1) for vertex in (keep, gone))
@@ -214,13 +219,13 @@ class Mesh:
         return self._restore_volume(keep, left, origin, was) and self._split_longest(gone, between, part)
 
     def _simple(self, keep, gone):
-        """Whether the facets at the edge are all that its ends have in common, so that its loss leaves a surface."""
+        """Whether the ends have no common neighbours but those of the facets at the edge, so that a surface remains."""
         j, k = self.around.T
         common = set(k[j == keep].tolist()).intersection(k[j == gone].tolist())
         return len(common) == (2 if self.dimension == 3 else 0)
 
     def _restore_volume(self, vertex, star, origin, was):
-        """Move the vertex on its ways so that its star has the volume it `was`. -> whether that is no long way."""
+        """Move the vertex so that the facets `star` have the volume `was`. -> whether the displacement is small."""
         areas = area_vectors(self.vertices, self.facets[star])
         normal, area = areas.sum(axis=0) / self.dimension, np.linalg.norm(areas, axis=1).sum() / self.dimension
         way, missing = self.ways[vertex] @ normal, was - volume(self.vertices, self.facets[star], origin)
@@ -231,8 +236,8 @@ class Mesh:
         return bool(np.linalg.norm(step) < 0.5 * self.size[star].mean())
 
     def _split_longest(self, vertex, spare, part):
-        """Put `vertex` in the middle of the longest edge, for its facets' sizes, that is not all fixed, with the
-        facets `spare` beside it."""
+        """Insert `vertex` in the middle of the edge that is longest over the size of its facets and not fixed, and use
+        the facets `spare` there."""
         d, facets = self.dimension, self.facets
         start, end = (facets[:, :1], facets[:, 1:]) if d == 2 else (facets, np.roll(facets, -1, axis=1))
         length = np.linalg.norm(self.vertices[end] - self.vertices[start], axis=2)
@@ -253,9 +258,9 @@ class Mesh:
                 values[new] = values[old]
         return True
 
-    def _turn(self, facet, side):
-        """Let the edge `side` of a flat triangle run from its third corner, which is put on it, to that of the triangle
-        behind it."""
+    def _flip(self, facet, side):
+        """Flip the longest edge `side` of a flat triangle: it then connects the third corner, which is moved on it, and
+        that of the triangle behind it."""
         a, b, c = np.roll(self.facets[facet], -side)
         holders = np.flatnonzero((self.facets == a).any(axis=1) & (self.facets == b).any(axis=1))
         behind = int(holders[holders != facet][0])
@@ -274,15 +279,15 @@ class Mesh:
         return self._restore_volume(c, star, origin, was)
 
     def _sharpness(self, vertex):
-        """(d - 1,) how much the facets there look across their mean normal, for what they look along it, the least first:
-        in space none is zero at a corner, only the first at an edge."""
+        """(d - 1,) eigenvalues of the normal tensor of a vertex over the largest, ascending: in space both are 0 in a
+        plane, the first at an edge, none at a corner."""
         areas = area_vectors(self.vertices, self.facets[(self.facets == vertex).any(axis=1)])
         values = np.linalg.eigvalsh(np.einsum("ni,nj->ij", areas, areas / np.linalg.norm(areas, axis=1)[:, None]))
         return values[:-1] / values[-1]
 
     def _is_sound(self, before, part):
-        """Whether the facets that are another shape than `before` crowd less, lie where the surface was, have turned
-        little, fixed ones not at all, and neither close a notch nor run through others."""
+        """Whether the facets changed since `before` are less crowded, lie on the old surface, have rotated by less than
+        TURN (fixed ones not at all), and neither close a notch nor intersect others."""
         vertices, facets = before["vertices"], before["facets"]
         other = (self.facets != facets).any(axis=1) | (self.vertices != vertices).any(axis=1)[facets].any(axis=1)
         high = altitudes(self.vertices, self.facets[other]) / self.size[other]
@@ -295,7 +300,7 @@ class Mesh:
             return False
         normals, were = (areas / np.linalg.norm(areas, axis=1)[:, None] for areas in (
             area_vectors(self.vertices, self.facets), area_vectors(vertices, facets)))
-        if not self._turned_little(other, normals[other], before, were):
+        if not self._rotated_little(other, normals[other], before, were):
             return False
         self._connect()
         if self.notches(self.vertices, normals)[other[self.joined].any(axis=1)].any():
@@ -307,13 +312,14 @@ class Mesh:
         self.refused[moved[self.facets].any(axis=1)] = np.inf
         return True
 
-    def _turned_little(self, other, normals, before, were):
-        """Whether each of the facets `other`, with these normals, looks as one of `before` did that shared two of its
-        corners (in the plane: one) and was fixed or not as it is."""
+    def _rotated_little(self, other, normals, before, were):
+        """Whether the normal of each facet `other` is near that of one of `before` which shared two of its corners (in
+        the plane: one) and was fixed if it is."""
         near = np.zeros(len(self.vertices), bool)
         near[self.facets[other]] = True
         old = near[before["facets"]].any(axis=1)
-        shared = (before["facets"][old][:, None, :, None] == self.facets[other][None, :, None, :]).any(axis=3).sum(axis=2)
+        corners = before["facets"][old][:, None, :, None] == self.facets[other][None, :, None, :]
+        shared = corners.any(axis=3).sum(axis=2)
         alike = (shared >= self.dimension - 1) & (before["fixed"][old][:, None] == self.fixed[other])
         least = np.where(self.fixed[other], 1 - 1e-10, TURN)
         return bool((alike & (were[old] @ normals.T > least)).any(axis=0).all())

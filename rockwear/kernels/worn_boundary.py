@@ -1,8 +1,8 @@
-"""Wear of a boundary of facets: the volume worn off each facet becomes an inward motion of its vertices (R 2.5).
+"""Wear of a boundary of facets: vertices move inwards by the volume worn off their facets [Rocky, sec. 2.5].
 
-The volume V of a closed boundary of facets with area vectors a_f is linear in any single vertex, dV/dx_j = N_j = sum of
-a_f / d over the facets at j, and a polynomial of degree d in the length s of a common motion x + s u. So the motion
-that takes away exactly a demanded volume is found to round-off.
+The volume V of a closed boundary of facets with area vectors a_f is linear in each vertex, dV/dx_j = sum of a_f / d
+over the facets at j, and a polynomial of degree d in the length s of a common motion x + s u. So the motion that
+removes exactly a demanded volume is found to round-off.
 """
 import numpy as np
 
@@ -11,83 +11,82 @@ from rockwear.kernels.checks import within
 from rockwear.kernels.remeshing import EDGE, SHAPE, TURN, Mesh
 
 STRIDE = 0.2
-"""Longest way of a vertex at once, as a part of the smallest altitude around it."""
+"""Longest displacement of a vertex in one step, over the smallest altitude of the facets at it."""
 LEAST_STRIDE = 1e-4
-"""An update waits until some vertex has so far to go, as a part of the same altitude: below it the last digit of the
-coordinates would spoil the volume."""
+"""Least displacement of an update, over the same altitude: below it round-off of the coordinates affects the volume."""
 NO_STRIDE = 1e-9 * LEAST_STRIDE
-"""What vertices would have to go after an update's first step and is less than this, by the same altitude, is round-off."""
+"""Displacement, over the same altitude, that is round-off after the first step of an update."""
 DENT = 0.1, 0.2
-"""Mean slope from a vertex up to its neighbours: from the first on it hands wear over to them, from the second on all
-of it."""
+"""Mean slope from a vertex up to its neighbours: from the first value on it transfers wear to them, from the second
+all of it."""
 SLIVER = 1e-3
-"""Smallest altitude of a facet, as a part of what it was at first."""
+"""Smallest altitude of a facet over the initial one."""
 ATTEMPTS = 8
-"""So often a step is tried, with vertices held back wherever it would fold."""
+"""Most trials of a step, with vertices held back where facets would fold."""
 LEAST_PART = 0.02
-"""Least part of what is due that is done in one step, where strides allow it."""
+"""Least part of the pending volume that is removed in one step, if STRIDE allows it."""
 STEPS = 200
-"""So many steps of at most a STRIDE in one update; what is still not done waits for the next."""
+"""Most steps in one update; the rest stays pending."""
 ALONG = 0.03
-"""A vertex on the rim of the fixed part gives way only where the worn facets look along the fixed ones with
-more than cos^2(80 degrees) of their weight."""
+"""A vertex at the fixed part moves only if the worn area, projected on the directions left by the fixed facets, is more
+than cos(80 degrees) of itself (squared here)."""
 ASTRAY = 0.02
-"""A vertex that would win less than this part of its way goes back along its mean normal instead."""
-BOOKS = "kept", "archard_volume", "removed", "broken_off"
+"""A vertex whose displacement has less than this component along its mean normal moves along that normal instead."""
+BALANCE = "on_fixed", "archard_volume", "removed", "broken_off"
 FAR = {2: 6, 3: 3}
-"""Facets that run through each other this many facets apart along the surface are two faces: the body is worn through.
+"""Facets that intersect at least this many facets apart along the surface are two faces: the body is worn through.
 Nearer ones are the flanks of one edge."""
 
 
 class WornAway(Exception):
-    """Nothing is left that could be worn: str() is one line."""
+    """The body is worn away: str() is one line."""
 
 
 class Folded(Exception):
-    """Much is left, but the vertices can move no further without a fold: str() is one line."""
+    """The vertices can move no further without a fold, though much is left: str() is one line."""
 
 
 class WornBoundary(Mesh):
-    """A closed boundary whose facets are worn: its vertices move inwards.
+    """A closed boundary whose facets are worn: its vertices move inwards. (Motion: ours.)
 
-    vertices, facets, fixed: as for Mesh, the fixed part being held (a shank); gone: the part of the volume at
-    which the body counts as worn away.
+    vertices, facets, fixed: as for Mesh; the fixed part is the shank; gone: the part of the volume at which the body
+    counts as worn away. Raises ParameterError as Mesh, and for a part out of [0, 1].
 
-    A fixed facet is never worn and keeps its plane (its line). It gets shorter as the worn surface beside it
-    retreats: a vertex of worn and fixed facets slides along the fixed ones, to the corner where they end.
+    A fixed facet is not worn and keeps its plane (its line). It becomes shorter as the worn surface beside it recedes:
+    a vertex of worn and fixed facets slides along the fixed ones.
 
-    A vertex moves so that each facet around it recedes by its own depth, volume over area, as nearly as one motion
-    can (least squares over the facets, weighted by area): an edge between a worn and a sound face slides down the
-    sound one, which keeps its plane. The facet's volume is shared equally by those of its vertices that can go.
-    Facets that crowd are given to where they are missed, without any change of the volume (kernels.remeshing).
+    The displacement of a vertex makes each facet at it recede by its own depth, volume over area, in the sense of least
+    squares weighted by area: an edge between a worn and an unworn face slides along the unworn one, which keeps its
+    plane. The volume of a facet is shared equally by those of its vertices that can move. Crowded facets are moved to
+    where facets are missing, without change of the volume (kernels.remeshing).
 
-    Where a step would fold a facet, or make two run through each other near an edge, the vertices in question stay
-    behind, and the facets around take over their wear. A feather edge breaks off, which is no wear: `broken_off` m3.
+    Where a step would fold a facet, or make two intersect near an edge, the vertices concerned are held back, and the
+    facets around are worn in their place. A feather edge breaks off, which is not wear: `broken_off` m3.
 
-    An update that moves vertices takes all that is due, to round-off, in STEPS strides at most. Below LEAST_STRIDE
-    nothing moves, and a later update makes up for it: what waits by then is less than LEAST_STRIDE times the area of
-    the worn facets times the largest of their altitudes. `pending` holds it by facet; `kept` is what fell on fixed
-    facets. `remeshed` counts the updates that changed which facets there are.
+    An update that moves vertices removes all pending volume, to round-off, in at most STEPS steps. Below LEAST_STRIDE
+    nothing moves, and the volume stays pending: less than LEAST_STRIDE times the area of the worn facets times the
+    largest of their altitudes. `pending` is the volume by facet; `on_fixed` that assigned to fixed facets; `remeshed`
+    counts the updates in which facets changed.
     """
 
     def __init__(self, *, gone=0.02, **shape):
         super().__init__(**shape)
         self.first_volume = volume(self.vertices, self.facets)
         self.least_volume = within("gone", gone, 0, 1) * self.first_volume
-        self.archard_volume = self.removed = self.kept = self.broken_off = 0.0
+        self.archard_volume = self.removed = self.on_fixed = self.broken_off = 0.0
         self.remeshed = 0
 
     # ---- wear
 
     def wear(self, demanded):
-        """Take the volumes `demanded` (m,) m3 off the facets. -> True if vertices have moved.
+        """Wear the volumes `demanded` (m,) m3 off the facets. -> whether vertices have moved.
 
-        Raises WornAway once less than the part `gone` would be left, or no motion takes more without folding and less
-        than half is left; Folded if more is left.
+        Raises WornAway if less than the part `gone` would be left, or if no motion without a fold is left and less than
+        half of the volume; Folded if more is left.
         """
         demanded = np.asarray(demanded, float)
         self.archard_volume += float(demanded.sum())
-        self.kept += float(demanded[self.fixed].sum())
+        self.on_fixed += float(demanded[self.fixed].sum())
         self.pending += np.where(self.fixed, 0.0, demanded)
         total = float(self.pending.sum())
         if total <= 0:
@@ -106,8 +105,8 @@ class WornBoundary(Mesh):
             if stuck > 10:
                 part = self.volume / self.first_volume
                 raise (WornAway if part < 0.5 else Folded)(
-                    f"its surface can recede no further without a fold, with {100 * part:.3g} % of the volume left: some "
-                    "part is thinner than its facets; take facets of another size, or wear it less than that")
+                    f"its surface can recede no further without a fold, with {100 * part:.3g} % of the volume left: "
+                    "some part is thinner than its facets; take facets of another size, or wear it less than that")
             if self._held_up.any():
                 hindrances += 1
                 self._spread(2**min(hindrances, 8))
@@ -117,7 +116,7 @@ class WornBoundary(Mesh):
             motion, weights, reach = self._motion()
             if reach.max() < NO_STRIDE:
                 break
-        # Last, so that the next demands, made for the facets as they lie then, find them there.
+        # At the end, so that the next demands are for the present facets.
         self._mend()
         return True
 
@@ -126,7 +125,7 @@ class WornBoundary(Mesh):
         self.broken_off += self.blunt()
 
     def _motion(self):
-        """For all that is pending: motion (n, d) m, volume (n,) m3 by vertex, and its reach (n,) over the altitude."""
+        """Of all pending volume: displacement (n, d) m, volume (n,) m3 by vertex, and length (n,) over the altitude."""
         areas, corners = area_vectors(self.vertices, self.facets), self.facets.ravel()
         n, d = self.vertices.shape
         self.share = self._shares(areas)
@@ -135,18 +134,18 @@ class WornBoundary(Mesh):
         normals = areas / size[:, None]
         gradient = self.sum_at_vertices(np.repeat(areas / d, d, axis=0))
         own = np.bincount(corners, share.ravel(), n)
-        values, frames = np.linalg.eigh(self.ways @ self.looks(normals, size) @ self.ways)
+        values, frames = np.linalg.eigh(self.ways @ self.normal_tensors(normals, size) @ self.ways)
         due = self.sum_at_vertices((d * share[:, :, None] * normals[:, None, :]).reshape(-1, d))
         along = np.einsum("nij,ni->nj", frames, due)
         seen = values > np.maximum(EDGE * values[:, -1:], 1e-12 * size.max())
         motion = -np.einsum("nij,nj->ni", frames, np.where(seen, along / np.where(seen, values, 1.0), 0.0))
         gain = -np.einsum("ni,ni->n", gradient, motion)
         straight = np.einsum("nij,nj->ni", self.ways, gradient)
-        # A ring of facets too crooked for that recedes along its mean normal.
+        # Where least squares fail for the facets at a vertex, it moves along their mean normal.
         sound = (gain > 0.25 * own) & (gain < 4 * own)
         motion = np.where(sound[:, None], motion, -straight)
         weights = self._over_dents(own, gradient)
-        # Across the surface nothing is won; what a vertex cannot take on any way stays pending.
+        # A tangential displacement removes nothing; the volume of a vertex that cannot move stays pending.
         way, straight = _directions(motion), _directions(-straight)
         least = ASTRAY * np.linalg.norm(gradient, axis=1)
         way = np.where((-np.einsum("ni,ni->n", gradient, way) > least)[:, None], way, straight)
@@ -156,7 +155,7 @@ class WornBoundary(Mesh):
         return motion, weights, np.linalg.norm(motion, axis=1) / self._room(areas)
 
     def _shares(self, areas):
-        """(m, d) of each facet's volume by its vertices: equal ones, but for vertices that what is fixed holds."""
+        """(m, d) shares of the vertices in the volume of a facet: equal, except for vertices held by fixed facets."""
         d = self.dimension
         worn = self.sum_at_vertices(np.repeat(areas * ~self.fixed[:, None], d, axis=0))
         way = np.einsum("nij,nj->ni", self.ways, worn)
@@ -165,8 +164,8 @@ class WornBoundary(Mesh):
         return taking / np.maximum(taking.sum(axis=1), 1)[:, None]
 
     def _over_dents(self, weights, gradient):
-        """The volumes by vertex, those of dents handed to the vertices around: what wears does not reach into a dent
-        finer than the facets, it rides on the rim."""
+        """Volumes (n,) m3 by vertex, those of dents transferred to the vertices around: a counterbody touches the rim
+        of a dent finer than the facets, not its bottom."""
         j, k = self.around.T
         n = len(self.vertices)
         apart = self.vertices[k] - self.vertices[j]
@@ -190,9 +189,9 @@ class WornBoundary(Mesh):
         return room
 
     def _step(self, motion, weights, reach):
-        """Do as much of the pending volume as a stride allows at each vertex, the lot of it exactly. -> whether it could
-        be done without a fold."""
-        # All vertices go on together, so that the shape between them stays, unless a few would hold up all others.
+        """Remove as much of the pending volume as STRIDE allows at each vertex, in sum exactly. -> whether a step
+        without a fold was found."""
+        # The same part for all vertices keeps the shape between them, unless a few would hold back all others.
         together = max(STRIDE / max(reach.max(), STRIDE), LEAST_PART)
         part = np.minimum(together, STRIDE / np.maximum(reach, STRIDE))
         for attempt in range(ATTEMPTS):
@@ -208,7 +207,7 @@ class WornBoundary(Mesh):
                 break
             if attempt >= 2:
                 self._check_through(through)
-            # First a shorter way, then none.
+            # First a shorter displacement, then none.
             part = np.where(hindered, 0.5 * part if attempt < 2 else 0.0, part)
             self._held_up |= hindered & (part == 0)
         else:
@@ -219,16 +218,16 @@ class WornBoundary(Mesh):
         total = float(self.pending.sum())
         undone = self.pending * (self.share * (1 - part[self.facets])).sum(axis=1)
         if undone.sum() <= 1e-9 * total:
-            # What lags is wear that dents have handed on: it stays with the facets it came from.
+            # The rest is wear that dents have transferred: it stays with its facets.
             undone = self.pending
         self.pending = undone * ((total - wanted) / undone.sum())
         self.removed += taken
-        # What the last digits of the coordinates took beside what was wanted is settled with the next motion.
+        # The difference by round-off of the coordinates is corrected by the next motion.
         self.pending[most] += wanted - taken
         return True
 
     def _length(self, motion, wanted):
-        """s for which the motion s u takes exactly `wanted` (m3), by Newton's rule on the polynomial."""
+        """s for which the motion s u removes exactly `wanted` (m3), by Newton's method on the polynomial."""
         terms = self._terms(motion)
         s = 1.0
         for _ in range(20):
@@ -241,8 +240,8 @@ class WornBoundary(Mesh):
         return s
 
     def _terms(self, motion):
-        """Coefficients of s, s^2 (, s^3) in the change of volume along s times the motion; no difference of volumes,
-        which would lose the digits of small motions."""
+        """Coefficients of s, s^2 (, s^3) in the change of volume by s times the motion; no difference of volumes, which
+        would lose digits for small motions."""
         x, u = self.vertices[self.facets] - self.vertices.mean(axis=0), motion[self.facets]
         if self.dimension == 2:
             cross = [p[:, 0, 0] * q[:, 1, 1] - p[:, 0, 1] * q[:, 1, 0] for p, q in ((x, u), (u, x), (u, u))]
@@ -258,7 +257,7 @@ class WornBoundary(Mesh):
         return float(self._terms(motion).sum())
 
     def _check_through(self, through):
-        """Raise Folded if of `through`, vertices of facets that run through each other, any are of two faces."""
+        """Raise Folded if any of `through`, vertices of intersecting facets, belong to two faces."""
         d = self.dimension
         j, k = self.around.T
         for row in through:
@@ -272,8 +271,8 @@ class WornBoundary(Mesh):
                              f"{100 * self.volume / self.first_volume:.3g} % of the volume left")
 
     def _folded(self, fresh):
-        """(n,) vertices of the facets that on the way to `fresh` turn far or collapse, or go through their neighbour or
-        close on it in a notch."""
+        """(n,) bool, vertices of the facets that in moving to `fresh` rotate by more than TURN, collapse, pass through
+        their neighbour or nearly close a notch with it."""
         before, after = area_vectors(self.vertices, self.facets), area_vectors(fresh, self.facets)
         cosine = np.einsum("ni,ni->n", before, after)
         cosine = cosine - TURN * np.linalg.norm(before, axis=1) * np.linalg.norm(after, axis=1)
@@ -286,7 +285,7 @@ class WornBoundary(Mesh):
         return folded
 
     def _spread(self, times):
-        """Hand on what facets that would fold could not do: half of it to the facets around, and so on, `times`."""
+        """Transfer pending volume of facets that would fold: half of it to the facets around, `times` times."""
         giving = self._held_up[self.facets].any(axis=1) & ~self.fixed
         corners, n = self.facets.ravel(), len(self.vertices)
         facets_at = np.maximum(np.bincount(corners, (~self.fixed).repeat(self.dimension), n), 1)
@@ -299,34 +298,34 @@ class WornBoundary(Mesh):
 
     @property
     def volume(self):
-        """m3 that the boundary encloses now."""
+        """Enclosed volume, m3."""
         return volume(self.vertices, self.facets)
 
     def volume_balance(self):
-        """The volume book in m3: what Archard's law wore, what the motion of vertices has taken, what waits, what fell
-        on fixed facets; what broke off beside that; unexplained is what the volume enclosed now has lost else."""
+        """Volume balance (m3): archard, demanded so far; removed by moving vertices; waiting, still pending; on fixed
+        facets, not removed; broken off, not wear; unexplained, the rest of the lost volume."""
         waiting = float(self.pending.sum())
         return {"archard": self.archard_volume, "removed": self.removed, "waiting": waiting,
-                "on_protected_facets": self.kept, "broken_off": self.broken_off,
-                "unexplained": self.first_volume - self.volume - self.broken_off + waiting + self.kept
+                "on_fixed_facets": self.on_fixed, "broken_off": self.broken_off,
+                "unexplained": self.first_volume - self.volume - self.broken_off + waiting + self.on_fixed
                 - self.archard_volume}
 
     def state(self):
-        """What must survive a restart."""
+        """What a checkpoint keeps."""
         return {**{name: getattr(self, name).copy() for name in SHAPE},
-                **{name: getattr(self, name) for name in (*BOOKS, "remeshed")}}
+                **{name: getattr(self, name) for name in (*BALANCE, "remeshed")}}
 
     def restore(self, state):
-        """Take back what `state` gave."""
+        """Resume from what `state` returned."""
         for name in SHAPE:
             setattr(self, name, state[name].copy())
-        for name in BOOKS:
+        for name in BALANCE:
             setattr(self, name, float(state[name]))
         self.remeshed = int(state["remeshed"])
         self._connect()
 
 
 def _directions(vectors):
-    """(n, d) of length 1, or 0 where the vectors are none."""
+    """(n, d) unit vectors; zero vectors stay."""
     size = np.linalg.norm(vectors, axis=1)
     return vectors / np.where(size > 0, size, 1.0)[:, None]

@@ -30,7 +30,7 @@ def test_outside_the_table_the_end_holds_with_one_warning():
     (MET71, 1.6e-3, 34e6, 156, 0.0023), (MET71, 1.6e-3, 28.2e6, 146, 0.0028),
     (MET91, 2e-3, 9.1e6, 128, 0.0113), (MET91, 2e-3, 9.0e6, 213, 0.01125)])
 def test_laboratory_rows(steel, depth, pressure, celsius, k):
-    """M 6.12-6.15 round k to 1e-4, after reading the hardness by eye (512 HB at 128 C for 511.2) and taking 10 MPa a HB."""
+    """[Rojek 2003, eq. 6.12-6.15] rounds k to 1e-4, with 512 HB read at 128 C (table: 511.2) and 10 MPa for one HB."""
     found = wear_coefficient(depth=depth, pressure=pressure, distance=100, hardness=steel(celsius + 273.15))
     assert found * 10e6 / BRINELL == pytest.approx(k, abs=0.7e-4)
 

@@ -41,7 +41,7 @@ def damaged(kind):
 @pytest.mark.parametrize("kind, words", [
     ("hole", "closed: it has holes"), ("flipped", "some facets are flipped"), ("inside out", "normals outwards"),
     ("flat", "free of degenerate facets"), ("nan", "finite"), ("unknown", "known vertices"),
-    ("crossing", "run through each other")])
+    ("crossing", "facets that intersect")])
 def test_damaged_boundaries_are_refused(kind, words):
     with pytest.raises(ParameterError, match=words):
         check_boundary(*damaged(kind), name="stl")

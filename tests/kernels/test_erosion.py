@@ -1,4 +1,4 @@
-"""The volume book of a wearing body under both removal rules, its surface, and the pieces that come loose."""
+"""Volume balance of a body of particles under both removal rules, its surface, and detached pieces."""
 import math
 
 import numpy as np
@@ -45,7 +45,8 @@ def test_depth_rule_equals_archard_only_on_the_square_lattice():
     lattice = block(20, 6, "depth")
     rub(lattice, 12 * 4 * R * R, 1200)
     assert lattice.volume_balance()["unexplained"] == pytest.approx(0, abs=1e-3 * 12 * 4 * R * R)
-    discs = Erosion(radii=[R] * 3, volumes=[math.pi * R * R] * 3, pairs=[(0, 1), (1, 2)], surface=[0], fixed=[2], rule="depth")
+    discs = Erosion(radii=[R] * 3, volumes=[math.pi * R * R] * 3, pairs=[(0, 1), (1, 2)], surface=[0], fixed=[2],
+                    rule="depth")
     discs.wear(np.array([4 * R * R, 0, 0]))
     balance = discs.volume_balance()
     assert balance["removed"] / balance["archard"] == pytest.approx(math.pi / 4)
@@ -118,7 +119,7 @@ def test_what_hangs_free_is_found_and_dropped_with_its_volume():
     assert body.mass_fraction_lost == pytest.approx(0.5)
 
 
-def test_a_body_worn_away_loses_no_volume_of_the_book():
+def test_a_body_worn_away_keeps_its_volume_balance():
     body = block(2, 1)
     body.wear(np.array([10 * 4 * R * R, 0]))
     assert not body.alive.any() and not body.surface
@@ -132,17 +133,18 @@ def test_order_of_particles_does_not_matter(particles_a_visit, visits):
     rng = np.random.default_rng(3)
     body, order = block(6, 4), rng.permutation(24)
     place = np.argsort(order)
-    shuffled = Erosion(radii=body.radii, volumes=body.volumes, pairs=place[body.pairs], surface=place[sorted(body.surface)],
-                       fixed=place[np.flatnonzero(body.fixed)])
+    shuffled = Erosion(radii=body.radii, volumes=body.volumes, pairs=place[body.pairs],
+                       surface=place[sorted(body.surface)], fixed=place[np.flatnonzero(body.fixed)])
     for _ in range(visits):
-        volume = np.where(np.isin(np.arange(24), list(body.surface)), rng.uniform(0, particles_a_visit * 4 * R * R, 24), 0)
+        wear = rng.uniform(0, particles_a_visit * 4 * R * R, 24)
+        volume = np.where(np.isin(np.arange(24), list(body.surface)), wear, 0)
         body.wear(volume)
         shuffled.wear(volume[order])
     assert np.array_equal(body.alive[order], shuffled.alive) and not body.alive.all()
     assert body.stored[order] == pytest.approx(shuffled.stored, abs=1e-18)
 
 
-def test_state_goes_on_where_it_was():
+def test_a_restored_body_continues_equally():
     body, other = block(6, 4), block(6, 4)
     rub(body, 5 * 4 * R * R, 50)
     other.restore(body.state())

@@ -1,4 +1,4 @@
-"""The joined depth of two faces of an inner edge: smooth, symmetric, the larger one elsewhere; a disc rests in a notch."""
+"""The joined depth of two facets of a notch: smooth, symmetric, the larger one elsewhere; a disc rests in a notch."""
 import math
 
 import numpy as np
@@ -11,7 +11,8 @@ COSINE = 1 - 2 * WIDTH / ROUNDING
 """Of the angle between two faces."""
 
 
-@pytest.mark.parametrize("first, second", [(1.0, 0.99), (0.8, 1.0), (1.0, 0.83), (0.5, 1.0), (1.0, 0.1), (2e-6, 2.1e-6)])
+@pytest.mark.parametrize("first, second", [
+    (1.0, 0.99), (0.8, 1.0), (1.0, 0.83), (0.5, 1.0), (1.0, 0.1), (2e-6, 2.1e-6)])
 def test_its_parts_are_its_derivatives(first, second):
     depth, parts = joined_depth(first, second, COSINE)
     step = 1e-6 * first
@@ -39,7 +40,7 @@ def test_it_is_the_larger_depth_but_for_nearly_equal_ones():
 def swings(slope, fraction, rate, law, steps=8000):
     """What a disc has gained that swings in a notch, over what its spring holds at rest, all damping counted.
 
-    Faces rise by `slope`; steps of `fraction` of sqrt(m/kn); rate: of background damping, over sqrt(kn/m); law: a function
+    Facets rise by `slope`; steps of `fraction` of sqrt(m/kn); rate: background damping over sqrt(kn/m); law: function
     of both depths and the cosine between the faces giving (depth, parts).
     """
     radius, load, deep = 1.0, np.array([0.0, 0.08]), 0.08
@@ -48,7 +49,8 @@ def swings(slope, fraction, rate, law, steps=8000):
     gained, spent = [], 0.0
     for _ in range(steps):
         depths = np.maximum(radius - normals @ place, 0.0)
-        depth, parts = law(*depths, math.cos(2 * slope)) if depths.min() > 0 else (depths.max(), 1.0 * (depths == depths.max()))
+        one_facet = depths.max(), 1.0 * (depths == depths.max())
+        depth, parts = law(*depths, math.cos(2 * slope)) if depths.min() > 0 else one_facet
         force = load + depth * np.asarray(parts) @ normals
         middle = velocity + 0.5 * force * fraction
         gained.append(0.5 * middle @ middle - load @ place + 0.5 * depth**2 + spent)

@@ -10,15 +10,16 @@ POINTS = np.random.default_rng(3).normal(size=(20, 2))
 
 
 def motion(**changed):
-    return SwingAndRotation(**{**dict(centre=(0.3, 0.7), swing=(0.2, 0.05), angular_velocity=1.6204, pivot=(0.02, 0.7), start=0.4),
-                               **changed})
+    values = dict(centre=(0.3, 0.7), swing=(0.2, 0.05), angular_velocity=1.6204, pivot=(0.02, 0.7), start=0.4)
+    return SwingAndRotation(**{**values, **changed})
 
 
 def test_a_quarter_turn():
     assert Pose(np.array([1.0, 2.0]), math.pi / 2).of([[3.0, 0.0]]) == pytest.approx(np.array([[1.0, 5.0]]))
 
 
-@pytest.mark.parametrize("path", [motion(), motion(angular_velocity=-3.0, swing=(0, 0)), Straight(start=(1, 2), velocity=(3, -1))])
+@pytest.mark.parametrize("path", [
+    motion(), motion(angular_velocity=-3.0, swing=(0, 0)), Straight(start=(1, 2), velocity=(3, -1))])
 def test_lengths_stay_and_velocity_and_spin_are_the_derivatives(path):
     t, dt = 0.37, 1e-5
     before, after = path.pose(t - dt), path.pose(t + dt)
@@ -35,7 +36,8 @@ def test_lengths_stay_and_velocity_and_spin_are_the_derivatives(path):
 def test_a_wheel_that_rolls_draws_a_cycloid():
     """x = R (q - sin q), y = R (1 - cos q): a point of the rim, at the bottom at first, of a wheel rolling along +x."""
     radius, angular_velocity = 0.7, 1.6204
-    path = SwingAndRotation(centre=(0, radius), swing=(radius * angular_velocity, 0), angular_velocity=-angular_velocity, pivot=(0, radius))
+    path = SwingAndRotation(centre=(0, radius), swing=(radius * angular_velocity, 0),
+                            angular_velocity=-angular_velocity, pivot=(0, radius))
     for t in (0.0, 0.3, 1.0, 3.9):
         angle = angular_velocity * t
         expected = radius * np.array([angle - math.sin(angle), 1 - math.cos(angle)])
@@ -49,7 +51,7 @@ def test_the_pivot_follows_the_centre():
 
 
 def test_a_chord_of_the_path_is_off_it_by_its_sagitta():
-    """(w R T)^2 / 8R at half time, which the swing does not bend: 23 nm in 100 steps of P's pick, five times as fast."""
+    """(w R T)^2 / 8R at half time, also with a swing: 23 nm in 100 steps, 5 times as fast as [Rojek 2014]."""
     path, period = motion(swing=(5 * 0.2, 0.0), angular_velocity=5 * 1.6204), 100 * 0.638e-6
     tip = path.pivot - (0.0, 0.7)
     begin, half, end = (path.pose(0.1 + t).of([tip])[0] for t in (0.0, period / 2, period))

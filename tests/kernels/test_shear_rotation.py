@@ -1,4 +1,4 @@
-"""The shear spring of a turning contact, led through YADE's rule: it turns with its contact, and gives back what it took."""
+"""The shear spring of a rotating contact through YADE's rule: it rotates with the contact and conserves energy."""
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
@@ -55,7 +55,8 @@ def test_slip_is_counted_in_full():
     """Spheres that roll past each other without turning as one: the displacement of their points of contact."""
     line, velocity, dt = np.array([[DISTANCE, 0, 0]]), np.array([[0, 2.0, 0]]), 1e-9
     spins = np.array([[[0, 0, 5.0]], [[0, 0, 90.0]]])
-    found = yade_step(shear_to_start_from(np.zeros((1, 3)), line, velocity, spins, RADII, KT, dt), line, velocity, spins, dt)
+    start = shear_to_start_from(np.zeros((1, 3)), line, velocity, spins, RADII, KT, dt)
+    found = yade_step(start, line, velocity, spins, dt)
     arms = RADII[:, 0] - 0.5 * (RADII.sum() - DISTANCE)
     assert found[0, 1] == pytest.approx(-KT[0] * dt * (2.0 - arms @ [5.0, 90.0]), rel=1e-6)
 

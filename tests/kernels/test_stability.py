@@ -185,7 +185,7 @@ def test_stiffness_for_each_bond():
 
 
 def test_damping_shortens_the_step():
-    """M (3.37)."""
+    """[Rojek 2003, eq. 3.37]."""
     x = [[0, 0], [1, 0]]
     ratio = equal_discs(x, [[0, 1]], damping_ratio=0.3) / equal_discs(x, [[0, 1]])
     assert ratio == pytest.approx(math.sqrt(1.09) - 0.3)
@@ -207,7 +207,7 @@ def damped(dashpot, **changes):
 
 @pytest.mark.parametrize("ratio", [0.1, 0.9, 3.0])
 def test_a_dashpot_on_one_mode(ratio):
-    """M (3.37) is exact there, and a spring of 2 cn/Δt costs the same."""
+    """[Rojek 2003, eq. 3.37] is exact there, and equal to a spring of 2 cn/Δt."""
     expected = (math.sqrt(1 + ratio**2) - ratio) * damped(0.0)
     assert damped(ratio) == pytest.approx(expected, rel=3e-6) and damped(ratio) <= expected
     cn = ratio * 2 * math.sqrt(2e10 * 1.5)

@@ -1,4 +1,4 @@
-"""R's rules for accelerated wear, against records whose statistics are known."""
+"""The rules of [Rocky] for accelerated wear, on records whose statistics are known."""
 import numpy as np
 import pytest
 
