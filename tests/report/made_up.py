@@ -58,7 +58,7 @@ def write_summary(folder, heat, value):
     numbers = {"mean_cutting_force": (value * 1e3, "N/m"), "mass_lost": (0.0123456789, "-"), "time_step": (5e-8, "s"),
                "critical_time_step": (1e-7, "s"), "rock_particles": (100, "-"), "tensile_cracks": (3, "-")}
     balances = {"energy": {"unit": "J/m", "tool_work": 200.0 * value, "rock_friction": 150.0, "residual": 50.0},
-             "mass": {"unit": "kg/m", "archard": 0.0, "removed": 0.0}}
+                "mass": {"unit": "kg/m", "archard": 0.0, "removed": 0.0}}
     if heat:
         numbers["tool_temperature_max"] = (350.0, "K")
         balances["heat"] = {"unit": "J/m", "generated": 400.0, "residual": 4.0}
