@@ -24,8 +24,9 @@ def make(values):
     v = SimpleNamespace(**values)
     parts.check_radii(v)
     check_cut(v, v.start_up + (v.cycle_time if v.cycles else 0.0))
-    return Cut(rock=box(v), tool=tool(v), programme=Cycles(times=times(v), **motion(v)), time_scale=v.time_scale,
-               background_damping=v.background_damping, **parts.common(v))
+    # The rock takes longest to pack: all else is refused before.
+    return Cut(tool=tool(v), programme=Cycles(times=times(v), **motion(v)), time_scale=v.time_scale,
+               background_damping=v.background_damping, **parts.common(v), rock=box(v))
 
 
 def check_cut(v, seconds):

@@ -51,8 +51,9 @@ def make(values):
                        start_up=v.start_up,
                        pass_time=v.cycle_time, long_time=v.long_time, shank_temperature=v.shank_temperature,
                        **cutting.motion(v))
-    return Cut(rock=cutting.box(v), tool=cutting.tool(v), programme=programme, background_damping=v.background_damping,
-               **parts.common(v))
+    # The rock takes longest to pack: all else is refused before.
+    return Cut(tool=cutting.tool(v), programme=programme, background_damping=v.background_damping, **parts.common(v),
+               rock=cutting.box(v))
 
 
 class Passes(Cycles):

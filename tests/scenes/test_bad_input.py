@@ -1,13 +1,16 @@
-"""Bad input ends before the first step: one line that names parameter, value, rule and unit, exit code 2, nothing written."""
+"""Bad input ends before the first step: one line that names parameter, value, rule and unit, exit code 2, no files."""
 import os
 
 import pytest
 
-from tests.running import ROOT, SMALL, arguments, run_script
+from tests.running import ROOT, SMALL, arguments, assert_refused, refusals, run_script
 
 SCRIPT = ROOT / "yade_scripts/tooth_cycles.py"
+OWN = {"outline": "tooth.csv"}
+WITHOUT_TOOTH = {name: None for name in ("tooth_height", "tooth_width", "rake", "clearance")}
+"""Parameters of the miniature that are not given."""
 
-CASES = [
+BROKEN_RULES = [
     ({"kn": -20e9}, "kn = -2e+10 N/m: must be greater than 0"),
     ({"kt": 0}, "kt = 0 N/m: must be greater than 0"),
     ({"tool_kn": -1}, "tool_kn = -1 N/m: must be greater than 0"),
@@ -34,29 +37,32 @@ CASES = [
     ({"depth_of_cut": 1e-3}, "depth_of_cut = 0.001 m: must be more than a rock particle"),
     ({"tooth_width": 0.08}, "tooth_width = 0.08"),
     ({"tooth_height": 0.05}, "tooth_height = 0.05"),
-    ({"rake": 79, "clearance": 20}, "rake = 79 deg: must be less than 90 degrees less the clearance, 70"),
+    ({"rake": 79, "clearance": 20}, "rake = 79 deg: must be less than 90 degrees minus the clearance, 70"),
     ({"rake": -80}, "tooth_width = 0.02 m: must be greater than"),
     ({"tip_radius": 0.05}, "tip_radius = 0.05 m: must be"),
     ({"tool_radius_min": 0.6e-3}, "tool_radius_max = 0.00052 m: must be at least tool_radius_min"),
     ({"tool_radius_max": 2e-3}, "tool_radius_max = 0.002 m: must be at most the rock's radius_min"),
-    ({"outline": "nowhere.csv"}, "outline = nowhere.csv: must be a readable CSV file"),
-    ({"steel": "butter"}, "steel = butter: must be one of MET71, MET91"),
+    ({"outline": "nowhere.csv", **WITHOUT_TOOTH}, "outline = nowhere.csv: must be a readable CSV file"),
+    ({"hardness_table": "butter"}, "hardness_table = butter: must be one of MET71, MET91"),
     ({"removal": "magic"}, "removal = magic: must be one of volume, depth"),
     ({"wear_coefficient": -1}, "wear_coefficient = -1: must be at least 0"),
-    ({"wear_law": "modes", "wear_modes": "0.01/1/0.5"}, "modes = 0.5: must be given shares of the friction that add up to 1"),
-    ({"wear_law": "power", "wear_exponent": 1e300}, "exponent = 1e+300: must be at most 20"),
-    ({"wear_exponent": 2}, "wear_exponent = 2: must be 1 under the law dissipation"),
-    ({"wear_modes": "0.01/1/1"}, "wear_modes = 0.01/1/1: must be left out under the law dissipation"),
-    ({"tool": "segments", "heat": "false", "removal": "depth"}, "removal = depth: must be volume for a tool of facets"),
+    ({"wear_law": "modes", "wear_modes": "0.01/1/0.5"},
+     "wear_modes = 0.01/1/0.5: must be given shares of the friction that add up to 1"),
+    ({"wear_law": "modes", "wear_modes": "0.01/30/1"}, "wear_modes = 0.01/30/1: must be with exponent at most 20"),
+    ({"wear_law": "modes", "wear_modes": "0.01/1"}, "wear_modes = 0.01/1: must be k/exponent/share of each mode"),
+    ({"wear_law": "modes", "wear_modes": "0.01/1/x"}, "wear_modes = 0.01/1/x: must be a number"),
+    ({"wear_law": "power", "wear_exponent": 1e300}, "wear_exponent = 1e+300: must be at most 20"),
     ({"contact_damping": 2}, "contact_damping = 2: must be at most 1"),
     ({"heat_fraction": 1.5}, "heat_fraction = 1.5: must be at most 1"),
-    ({"tool_temperature": 1500}, "tool_temperature = 1500 K: must be inside the hardness table of MET91, 273.15 to 873.15"),
+    ({"tool_temperature": 1500},
+     "tool_temperature = 1500 K: must be inside the hardness table of MET91, 273.15 to 873.15"),
     ({"ambient_temperature": 20}, "ambient_temperature = 20 K: must be inside the hardness table"),
     ({"time_step": 1e-5}, "time_step = 1e-05 s: must be at most the stable step"),
     ({"time_step_fraction": 1.5}, "time_step_fraction = 1.5: must be at most 1"),
     ({"sampling_period": 0}, "sampling_period = 0 steps: must be a whole number of at least 1"),
+    ({"sampling_period": 2, "tool": "segments", "heat": "false"},
+     "sampling_period = 2 steps: must be 1 for a tool of facets"),
     ({"tool_specific_heat": 1e-6}, "heat_period = 0.0001 s: must be at most 1000 stable heat steps"),
-    ({"kn": 1e300, "heat": "false"}, "must be at most 1e+10 of"),
     ({"heat_period": 0}, "heat_period = 0 s: must be greater than 0"),
     ({"heat": "maybe"}, "heat = maybe: must be true or false"),
     ({"checkpoint_interval": 0}, "checkpoint_interval = 0 s: must be greater than 0"),
@@ -65,67 +71,140 @@ CASES = [
     ({"out": "/proc/nowhere"}, "out = /proc/nowhere: must be a folder that can be written"),
     ({"resume": "true"}, "must be an existing checkpoint: there is none to resume from"),
 ]
+OUT_OF_RANGE = [
+    ({"kn": 1e300}, "kn = 1e+300 N/m: must be between 1 and 1e+15"),
+    ({"kt": 1e99}, "kt = 1e+99 N/m: must be between 1 and 1e+15"),
+    ({"tool_kn": 1e99}, "tool_kn = 1e+99 N/m: must be between 1 and 1e+15"),
+    ({"tool_kt": 1e99}, "tool_kt = 1e+99 N/m: must be between 1 and 1e+15"),
+    ({"rock_density": 1e-99}, "rock_density = 1e-99 kg/m3: must be between 1 and 1e+06"),
+    ({"velocity": 1e99}, "velocity = 1e+99 m/s: must be between 1e-09 and 100000"),
+    ({"start_up": 1e99}, "start_up = 1e+99 s: must be between 1e-12 and 1e+08"),
+    ({"velocity": 1e-6, "start_up": 1e4, "cycles": 0, "heat": "false"}, "must be at most 1e+10 of"),
+]
+NOT_USED = [
+    ({"H": 1e9}, "H = 1e+09 N/m: must be left out with bond_law = brittle"),
+    ({"tension_only": "true"}, "tension_only = true: must be left out with bond_law = brittle"),
+    ({"padova_m": 1e8}, "padova_m = 1e+08 N^(2/3)/m: must be left out with bond_law = brittle"),
+    ({"bond_law": "padova", "H": 1e9}, "H = 1e+09 N/m: must be left out with bond_law = padova"),
+    ({"wear_exponent": 2}, "wear_exponent = 2: must be left out with wear_law = dissipation"),
+    ({"wear_modes": "0.01/1/1"}, "wear_modes = 0.01/1/1: must be left out with wear_law = dissipation"),
+    ({"segment": 1e-3}, "segment = 0.001 m: must be left out with tool = particles"),
+    ({"work_fraction": 0.5}, "work_fraction = 0.5: must be left out with tool = particles"),
+    ({"reshape": "true"}, "reshape = true: must be left out with tool = particles"),
+    ({"thermal_radius": 1e-3}, "thermal_radius = 0.001 m: must be left out with tool = particles"),
+    ({"tool": "segments", "removal": "depth"}, "removal = depth: must be left out with tool = segments"),
+    ({"tool": "segments", "tool_radius_min": 4e-4},
+     "tool_radius_min = 0.0004 m: must be left out with tool = segments"),
+    ({"tool": "segments", "tool_radius_max": 4e-4},
+     "tool_radius_max = 0.0004 m: must be left out with tool = segments"),
+    ({"tool": "segments", "heat": "false", "thermal_radius": 1e-3},
+     "thermal_radius = 0.001 m: must be left out with heat = false"),
+    *(({"heat": "false", name: value}, f"{name} = {value}{unit}: must be left out with heat = false")
+      for name, value, unit in (
+          ("rock_conductivity", 5, " W/mK"), ("tool_specific_heat", 450, " J/kgK"), ("heat_fraction", 0.5, ""),
+          ("rock_expansion", 0.1, " 1/K"), ("conduction", "true", ""), ("bond_conductance", "bar", ""),
+          ("shank", "fixed", ""), ("ambient_temperature", 300, " K"), ("rock_temperature", 300, " K"),
+          ("heat_period", 0.1, " s"), ("surface_period", 0.1, " s"))),
+    ({"shank_temperature": 300}, "shank_temperature = 300 K: must be left out with shank = insulated"),
+    ({"hardness": 1e9, "hardness_table": "MET71"}, "hardness_table = MET71: must be left out with hardness = 1e+09"),
+    ({"hardness": 1e9, "hardness_temperature": 300},
+     "hardness_temperature = 300 K: must be left out with hardness = 1e+09"),
+    *(({**OWN, **WITHOUT_TOOTH, name: SMALL[name]},
+       f"{name} = {SMALL[name]} {unit}: must be left out with outline = tooth.csv")
+      for name, unit in (("tooth_height", "m"), ("tooth_width", "m"), ("rake", "deg"), ("clearance", "deg"))),
+]
+OLD_NAMES = [
+    ({"law": "damage"}, "law = damage: must be given as bond_law, its name since 0.2"),
+    ({"acceleration": 1}, "acceleration = 1: must be given as wear_acceleration, its name since 0.2"),
+    ({"speed_up": 2}, "speed_up = 2: must be given as time_scale, its name since 0.2"),
+    ({"coarsening": 2}, "coarsening = 2: must be given as grading_factor, its name since 0.2"),
+    ({"steel": "MET91"}, "steel = MET91: must be given as hardness_table, its name since 0.2"),
+    ({"root": "fixed"}, "root = fixed: must be given as shank, its name since 0.2"),
+    ({"root_temperature": 300}, "root_temperature = 300: must be given as shank_temperature, its name since 0.2"),
+    ({"bond_conductance": "cells"}, "bond_conductance = cells: must be given as voronoi, its name since 0.2"),
+    ({"bond_conductance": "M"}, "bond_conductance = M: must be given as half_bar, its name since 0.2"),
+]
+CASES = [*BROKEN_RULES, *OUT_OF_RANGE, *NOT_USED, *OLD_NAMES]
+IDS = [" ".join(f"{k}={v}" for k, v in values.items() if v is not None)[:80] for values, _ in CASES]
 
 
-def one_line(run, words):
-    errors = [line for line in run.stderr.splitlines() if line.startswith("error: ")]
-    assert run.code == 2, run.stderr
-    assert len(errors) == 1 and words in errors[0], run.stderr
-    assert "Traceback" not in run.stdout + run.stderr
+def words_of(values, out):
+    """Command line of the miniature with these values; None leaves one out."""
+    return arguments({name: value for name, value in {**SMALL, "out": out, **values}.items() if value is not None})
 
 
-@pytest.mark.parametrize("values, words", CASES, ids=[" ".join(f"{k}={v}" for k, v in values.items()) for values, _ in CASES])
-def test_bad_value(values, words, tmp_path):
-    run = run_script(SCRIPT, *arguments({**SMALL, "out": tmp_path / "out", **values}), cwd=tmp_path)
-    one_line(run, words)
-    assert os.listdir(tmp_path) == []
+@pytest.fixture(scope="module")
+def refused(tmp_path_factory):
+    """What the script said to each of CASES, and whether it wrote anything."""
+    folder = tmp_path_factory.mktemp("cases")
+    said = refusals(SCRIPT, folder, [words_of(values, folder / "out") for values, _ in CASES])
+    return said, sorted(os.listdir(folder))
+
+
+@pytest.mark.parametrize("case", range(len(CASES)), ids=IDS)
+def test_bad_value(refused, case):
+    assert_refused(*refused[0][case], CASES[case][1])
+
+
+def test_bad_values_leave_nothing_behind(refused):
+    assert refused[1] == ["cases.json", "checks.json"]
 
 
 @pytest.mark.parametrize("words, expected", [
-    (["--kn"], "kn = : must be given a value"), (["kn", "3"], "argument = kn: must be of the form --name value"),
-    (["--kn", "--kt", "3"], "kn = : must be given a value")])
-def test_bad_command_line(words, expected, tmp_path):
+    (words_of({"kn": -20e9}, "out"), "kn = -2e+10 N/m: must be greater than 0"),
+    (words_of({"tool_specific_heat": 1e-6}, "out"), "heat_period = 0.0001 s: must be at most 1000 stable heat steps"),
+    (["--kn"], "kn = : must be given a value")], ids=["rule", "scene", "command line"])
+def test_a_process_of_its_own_ends_so(words, expected, tmp_path):
     run = run_script(SCRIPT, *words, cwd=tmp_path)
-    one_line(run, expected)
+    assert_refused(run.code, run.stdout + run.stderr, expected)
     assert os.listdir(tmp_path) == []
 
 
-@pytest.mark.parametrize("rows, expected", [
-    ("0,0\n1,0\n", "tooth.csv, 2 vertices: must be at least 3 vertices"),
-    ("0,0\n0.02,0.02\n0.02,0\n0,0.02\n", "tooth.csv, 4 vertices: must be free of repeated vertices"),
-    ("x,y\n0,0\n1,a\n0,1\n", "tooth.csv: must be two numbers a row, unlike line 3"),
-    ("\n".join(f"{k},{k % 2}" for k in range(5000)), "tooth.csv, 5000 vertices: must be of at most 4000")])
-def test_bad_outline(rows, expected, tmp_path):
-    file = tmp_path / "tooth.csv"
-    file.write_text(rows, encoding="utf-8")
-    run = run_script(SCRIPT, *arguments({**SMALL, "out": tmp_path / "out", "outline": file}))
-    one_line(run, expected)
-    assert os.listdir(tmp_path) == ["tooth.csv"]
+def test_bad_command_line(tmp_path):
+    cases = {"kn = : must be given a value": ["--kn"], "argument = kn: must be of the form --name value": ["kn", "3"],
+             "kt = 3=4 N/m: must be a number": ["--kt=3=4"], "Rn = : must be given a value": ["--Rn", "--kt", "3"]}
+    for expected, (code, said) in zip(cases, refusals(SCRIPT, tmp_path, cases.values())):
+        assert_refused(code, said, expected)
 
 
-def test_a_run_replaces_nothing_that_is_not_a_runs(tmp_path):
-    thesis = tmp_path / "out/figures/thesis.png"
-    thesis.parent.mkdir(parents=True)
-    thesis.write_bytes(b"mine")
-    one_line(run_script(SCRIPT, *arguments({**SMALL, "out": tmp_path / "out"})), "figures there would be replaced")
-    assert thesis.read_bytes() == b"mine"
+def test_bad_outline(tmp_path):
+    cases = {
+        "tooth.csv, 2 vertices: must be at least 3 vertices": "0,0\n1,0\n",
+        "tooth.csv, 4 vertices: must be free of repeated vertices": "0,0\n0.02,0.02\n0.02,0\n0,0.02\n",
+        "tooth.csv: must be two numbers a row, unlike line 3": "x,y\n0,0\n1,a\n0,1\n",
+        "tooth.csv, 5000 vertices: must be of at most 4000": "\n".join(f"{k},{k % 2}" for k in range(5000))}
+    words = []
+    for number, rows in enumerate(cases.values()):
+        file = tmp_path / str(number) / "tooth.csv"
+        file.parent.mkdir()
+        file.write_text(rows, encoding="utf-8")
+        words.append(words_of({"outline": file, **WITHOUT_TOOTH}, tmp_path / "out"))
+    for expected, (code, said) in zip(cases, refusals(SCRIPT, tmp_path, words)):
+        assert_refused(code, said, expected)
+    assert not (tmp_path / "out").exists()
 
 
-def test_a_run_does_not_read_from_the_folder_that_it_replaces(tmp_path):
-    file = tmp_path / "out/tooth.csv"
-    file.parent.mkdir()
-    file.write_text("0,0\n0,0.03\n-0.02,0.03\n-0.02,0.005\n", encoding="utf-8")
-    one_line(run_script(SCRIPT, *arguments({**SMALL, "out": tmp_path / "out", "outline": file})), "must be outside of")
-    assert file.exists() and os.listdir(file.parent) == ["tooth.csv"]
+def test_a_run_replaces_no_file_of_another_origin_and_none_that_it_reads(tmp_path):
+    thesis, file = tmp_path / "work/figures/thesis.png", tmp_path / "out/tooth.csv"
+    for path, text in ((thesis, "mine"), (file, "0,0\n0,0.03\n-0.02,0.03\n-0.02,0.005\n")):
+        path.parent.mkdir(parents=True)
+        path.write_text(text, encoding="utf-8")
+    foreign, inside = refusals(SCRIPT, tmp_path, [words_of({}, tmp_path / "work"),
+                                                  words_of({"outline": file, **WITHOUT_TOOTH}, tmp_path / "out")])
+    assert_refused(*foreign, "figures there would be replaced")
+    assert_refused(*inside, "must be outside of")
+    assert thesis.read_text(encoding="utf-8") == "mine" and os.listdir(file.parent) == ["tooth.csv"]
 
 
 def test_a_checkpoint_belongs_to_the_contents_of_its_files(tmp_path):
     file, out = tmp_path / "tooth.csv", tmp_path / "out"
-    values = {**SMALL, "start_up": 1e-4, "cycles": 0, "heat": "false", "report": "false", "outline": file, "out": out}
+    words = words_of({"start_up": 1e-4, "cycles": 0, "heat": "false", "report": "false", "outline": file,
+                      **WITHOUT_TOOTH}, out)
     file.write_text("0,0\n0,0.03\n-0.02,0.03\n-0.02,0.005\n", encoding="utf-8")
-    assert run_script(SCRIPT, *arguments(values)).code == 0
+    assert run_script(SCRIPT, *words).code == 0
     file.write_text("0,0\n0,0.03\n-0.02,0.03\n-0.02,0.006\n", encoding="utf-8")
-    one_line(run_script(SCRIPT, *arguments(values), "--resume"), "of the same files: outline is ")
+    run = run_script(SCRIPT, *words, "--resume")
+    assert_refused(run.code, run.stderr, "of the same files: outline is ")
 
 
 def test_help_lists_every_parameter_with_its_source():

@@ -26,7 +26,13 @@ class SumOfModes(WearLaw):
 
     @classmethod
     def from_values(cls, values, mu):
-        return cls(_mode(word, mu) for word in values["wear_modes"].split(","))
+        given = values["wear_modes"]
+        try:
+            return cls(_mode(word, mu) for word in given.split(","))
+        except ParameterError as error:
+            # The user knows one word for all modes, not the arguments of their laws.
+            argument = "" if error.name in ("modes", "wear_modes") else f"with {error.name} "
+            raise ParameterError("wear_modes", given, f"{argument}{error.rule}") from None
 
     @property
     def needs(self):
