@@ -21,7 +21,7 @@ from rockwear.run import parameters, servers
 from rockwear.run.main import COMMON
 
 LAWS = "brittle", "damage", "plastic"
-"""Laws with an elastic domain. Without one (padova) Python computes every bond at every step: some thirty times as long."""
+"""Laws with an elastic domain. Without one (padova) Python computes every bond in every step, thirty times as long."""
 TURNS = Parameter("turns", 5, "", integer(1), "runs of each law")
 
 

@@ -80,7 +80,7 @@ def unexplained(tool):
 
 
 def face(polygon, volume):
-    """The exact flat face after `volume` (m3) of wear: its height (m) along DOWN, the direction along it, and its ends (m) in that direction."""
+    """The exact flat face after `volume` (m3) of wear: height (m) along DOWN, its direction, its ends (m) along that."""
     target, height = exact(polygon, volume)
     along = np.array([DOWN[1], -DOWN[0]])
     return height, along, *sorted(float(p @ along) for p in target if abs(p @ DOWN - height) < 1e-9)
