@@ -247,7 +247,8 @@ class Cycles(Programme):
 
     def state(self):
         steps = np.array([steps for _, steps in self.scene.stages])
-        return {**super().state(), "stage_steps": steps, "approach_steps": self.approach_steps, "start": self.start.state()}
+        return {**super().state(), "stage_steps": steps, "approach_steps": self.approach_steps,
+                "start": self.start.state()}
 
     def restore(self, state):
         super().restore(state)
