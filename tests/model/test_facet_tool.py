@@ -27,7 +27,8 @@ def test_stl_as_text(tmp_path):
     points = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
     lines = ["solid pick"]
     for facet in ([0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]):
-        lines += ["facet normal 0 0 0", "outer loop", *("vertex %g %g %g" % tuple(points[i]) for i in facet), "endloop", "endfacet"]
+        places = ("vertex %g %g %g" % tuple(points[i]) for i in facet)
+        lines += ["facet normal 0 0 0", "outer loop", *places, "endloop", "endfacet"]
     (tmp_path / "pick.stl").write_text("\n".join([*lines, "endsolid pick", ""]), encoding="utf-8")
     assert volume(*read_stl(tmp_path / "pick.stl")) == pytest.approx(1 / 6)
 
@@ -51,7 +52,8 @@ def test_damaged_surfaces_are_refused(kind, words, tmp_path):
     assert str(caught.value).startswith("stl = ") and "\n" not in str(caught.value)
 
 
-@pytest.mark.parametrize("content", [None, b"", b"not a mesh", b"solid\nfacet normal 0 0", b"\0" * 80 + struct.pack("<I", 900)])
+@pytest.mark.parametrize("content", [
+    None, b"", b"not a mesh", b"solid\nfacet normal 0 0", b"\0" * 80 + struct.pack("<I", 900)])
 def test_unreadable_files_are_refused(content, tmp_path):
     if content is not None:
         (tmp_path / "tooth.stl").write_bytes(content)
@@ -66,8 +68,8 @@ def test_a_segment_in_yade_is_a_triangle_whose_nearest_point_lies_in_the_plane()
     for triangle, (i, j) in zip(corners(vertices, facets), facets):
         p, along = vertices[i], vertices[j] - vertices[i]
         for point in chance.uniform(-1e-3, 3e-3, (30, 2)):
-            exact = p + along * np.clip((point - p) @ along / (along @ along), 0, 1)
-            assert nearest_on_triangle(np.append(point, 0.0), triangle) == pytest.approx(np.append(exact, 0.0), abs=1e-15)
+            exact = np.append(p + along * np.clip((point - p) @ along / (along @ along), 0, 1), 0.0)
+            assert nearest_on_triangle(np.append(point, 0.0), triangle) == pytest.approx(exact, abs=1e-15)
 
 
 def test_the_incentre_is_as_far_from_all_sides():
@@ -78,11 +80,12 @@ def test_the_incentre_is_as_far_from_all_sides():
         assert away == pytest.approx([away[0]] * 3, rel=1e-12)
 
 
-def test_the_shank_holds_top_and_back():
+def test_top_and_back_are_fixed_to_the_shank():
     tool = FacetTool.of_outline(TOOTH, segment=2e-3, density=7830.0)
     fixed = tool.first[tool.first_facets[tool.boundary.fixed]]
-    assert ((fixed[..., 1] > 0.07 - 1e-12).all(axis=1) | (fixed[..., 0] < tool.first[:, 0].min() + 1e-12).all(axis=1)).all()
+    rear = tool.first[:, 0].min() + 1e-12
+    assert ((fixed[..., 1] > 0.07 - 1e-12).all(axis=1) | (fixed[..., 0] < rear).all(axis=1)).all()
     sides = np.linalg.norm(np.diff(fixed, axis=1), axis=2).sum()
-    top, back = tool.first[tool.first[:, 1] > 0.07 - 1e-12], tool.first[tool.first[:, 0] < tool.first[:, 0].min() + 1e-12]
+    top, back = tool.first[tool.first[:, 1] > 0.07 - 1e-12], tool.first[tool.first[:, 0] < rear]
     assert sides == pytest.approx(np.ptp(top[:, 0]) + np.ptp(back[:, 1]), rel=1e-9)
     assert tool.foremost(below=0.01) == pytest.approx(0.0, abs=1e-4)
