@@ -7,7 +7,7 @@ References, and the keys that docstrings, --help and reports use for them:
 [Rojek 2014]       J. Rojek: Discrete element thermomechanical modelling of rock cutting with valuation of tool wear.
                    Computational Particle Mechanics 1 (2014) 71-84.
 [Rocky]            Rocky DEM, technical manual, section 2.5: wear model (wear of triangulated boundaries).
-[Bahaaddini 2018]  M. Bahaaddini, M. Rahimi: Distinct element modelling of the mechanical behaviour of intact rocks using
-                   Voronoi tessellation model. International Journal of Mining and Geo-Engineering, 2018.
+[Bahaaddini 2018]  M. Bahaaddini, M. Rahimi: Distinct element modelling of the mechanical behaviour of intact rocks
+                   using Voronoi tessellation model. International Journal of Mining and Geo-Engineering, 2018.
 """
 __version__ = "0.2.0"

@@ -67,7 +67,7 @@ class CutOutput(Output):
             "block": np.array([rock.width, rock.height, rock.depth])}
         heat = {"thermal_positions": scene.tool.thermal_body.positions} if scene.heat else {}
         return {"rock_radii": rock.radii, "rock_fixed": rock.fixed, "bonds": rock.pairs, "outline": scene.tool.outline,
-                **size, **heat, **scene.tool.model_arrays(), **scene.programme.model_arrays()}
+                **size, **heat, **scene.tool.model_arrays(), **scene.programme.arrays}
 
     def snapshot(self):
         scene = self.scene

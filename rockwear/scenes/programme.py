@@ -12,7 +12,8 @@ from rockwear.kernels.rigid_motion import Straight
 
 
 class Programme(ABC):
-    """What a scene asks of a programme; `motion` (of kernels.rigid_motion) is the path of the tool.
+    """What a scene asks of a programme; `motion` (of kernels.rigid_motion) is the path of the tool,
+    `arrays` {name: array} are for the report.
 
     The scene is a scenes.cut.Cut, given by `attach`. Its `stage` counts the stages that `stages` names.
     """
@@ -20,8 +21,8 @@ class Programme(ABC):
     damping_rates = None
     """(stages,) 1/s of background damping by stage; None where it stays the same."""
 
-    def __init__(self, motion=None):
-        self.motion = motion
+    def __init__(self, motion=None, arrays=None):
+        self.motion, self.arrays = motion, arrays or {}
 
     def attach(self, scene):
         """The scene whose programme this is."""
@@ -113,10 +114,6 @@ class Programme(ABC):
 
     def heat_log(self):
         """{name: (value, unit)} of the history of a scene with heat."""
-        return {}
-
-    def model_arrays(self):
-        """{name: array} that stays the same."""
         return {}
 
     @abstractmethod
@@ -292,7 +289,8 @@ class LowerAndCut(Programme):
     """
 
     def __init__(self, *, ways, start, damping_rates=None):
-        super().__init__(Straight(start=start, velocity=ways[0][2]))
+        super().__init__(Straight(start=start, velocity=ways[0][2]),
+                         {"stage_names": np.array([name for name, _, _ in ways])})
         self.ways, self.damping_rates = ways, damping_rates
 
     def stages(self):
@@ -307,9 +305,6 @@ class LowerAndCut(Programme):
     def begin_stage(self, folder):
         if not self.scene.finished:
             self.scene.tool.bodies.go_on(self.ways[self.scene.stage][2])
-
-    def model_arrays(self):
-        return {"stage_names": np.array([name for name, _, _ in self.ways])}
 
     def results(self, columns):
         cut = columns["stage"] == len(self.ways) - 1 if columns else np.zeros(0, bool)

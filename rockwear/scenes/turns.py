@@ -24,9 +24,9 @@ class Turns(Programme):
     """
 
     def __init__(self, *, motion, approach_time, cut_time, turn_time, cycles, cooling_period, chip_area, arrays):
-        super().__init__(motion)
+        super().__init__(motion, arrays)
         self.approach_time, self.cut_time, self.turn_time = approach_time, cut_time, turn_time
-        self.cycles, self.cooling_period, self.chip_area, self.arrays = cycles, cooling_period, chip_area, arrays
+        self.cycles, self.cooling_period, self.chip_area = cycles, cooling_period, chip_area
         self.cooled, self.worn_heat = 0, 0.0
 
     def attach(self, scene):
@@ -125,9 +125,6 @@ class Turns(Programme):
                 "water_heat": (-heat.network.balance["convected"], "J/m"),
                 "pick_friction_heat": (float(heat.load.friction_heat.sum()), "J/m"),
                 "pick_heat_worn_away": (self.worn_heat, "J/m")}
-
-    def model_arrays(self):
-        return self.arrays
 
     def cut_area(self):
         """Area (m2) of the rock that the tool has gone through."""
