@@ -186,7 +186,7 @@ class Bonds(Engine):
         softening.Fn = phys.kn * (softening.un - bond.un_plastic)
         before = bond.softening
         ut = self.normals.shear_displacement(n, geom, first, second)
-        far = self.normals.in_space(n) and ut.norm() > LARGE_SHEAR * (geom.refR1 + geom.refR2)
+        far = self.normals.in_space(n) and ut.norm() > LARGE_SHEAR * sum(softening.radii)
         if far or not self.shear_by_radii:
             ut = _with_stored_length(ut, softening)
         dissipated = softening.advance(ut, O.forces)

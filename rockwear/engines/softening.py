@@ -15,6 +15,7 @@ class SofteningBond:
 
     law, bond: the law and the state of its bond; overlap: penetrationDepth (m) at which the opening is zero; un, Fn:
     opening (m) and normal force (N) of the last step; dissipated: J so far; elastic_steps: steps since it last yielded;
+    radii: m, of the particles when YADE's law was released (later thermal expansion does not lengthen the lever arms);
     tensile: True if it broke in tension, False if in shear.
 
     YADE's contact is kept such that its own law makes the next elastic trial: shearForce is the tangential force, and
@@ -23,11 +24,11 @@ class SofteningBond:
     """
 
     __slots__ = ("interaction", "geom", "phys", "bodies",
-                 "law", "bond", "overlap", "un", "Fn", "dissipated", "elastic_steps", "tensile")
+                 "law", "bond", "overlap", "un", "Fn", "dissipated", "elastic_steps", "radii", "tensile")
 
-    def __init__(self, *, law, bond, overlap, un=0.0, Fn=0.0, dissipated=0.0, elastic_steps=0):
+    def __init__(self, *, law, bond, overlap, un=0.0, Fn=0.0, dissipated=0.0, elastic_steps=0, radii=(0.0, 0.0)):
         self.law, self.bond, self.overlap, self.un, self.Fn = law, bond, overlap, un, Fn
-        self.dissipated, self.elastic_steps = dissipated, int(elastic_steps)
+        self.dissipated, self.elastic_steps, self.radii = dissipated, int(elastic_steps), radii
 
     def connect(self, interaction):
         """Use this contact of the scene that is in O now."""
@@ -36,7 +37,7 @@ class SofteningBond:
 
     def release(self):
         """Remove the limits of YADE's law: from now on `advance` gives the force of each step."""
-        phys = self.phys
+        phys, self.radii = self.phys, (self.geom.refR1, self.geom.refR2)
         phys.isCohesive, phys.FnMax, phys.FsMax, phys.tanFrictionAngle = True, UNLIMITED, UNLIMITED, 0.0
         self.elastic_steps = 0
 
@@ -79,11 +80,11 @@ class SofteningBond:
                 return None
         else:
             self.tensile = law.kn * (un - un_plastic) / law.Rn >= law.kt * ut.norm() / law.Rt
-        (first, second), moment = self.bodies, change.cross(normal)
+        (first, second), (arm_1, arm_2), moment = self.bodies, self.radii, change.cross(normal)
         forces.addF(first, -change)
         forces.addF(second, change)
-        forces.addT(first, moment * (geom.refR1 - 0.5 * penetration))
-        forces.addT(second, moment * (geom.refR2 - 0.5 * penetration))
+        forces.addT(first, moment * (arm_1 - 0.5 * penetration))
+        forces.addT(second, moment * (arm_2 - 0.5 * penetration))
 
         kt, ut_before = phys.ks, ut - increment
         elastic = ut - Vector3(bond.ut_plastic)
@@ -110,19 +111,19 @@ def set_elastic_domain(phys, domain):
 
 def to_rows(softening_bonds, scalars):
     """A row of numbers for each bond of {number: SofteningBond}; scalars: names of those in the state of a bond."""
-    rows = [(n, s.overlap, s.un, s.Fn, s.dissipated, s.elastic_steps, *(getattr(s.bond, name) for name in scalars))
-            for n, s in softening_bonds.items()]
-    return np.array(rows, float).reshape(-1, 6 + len(scalars))
+    rows = [(n, s.overlap, s.un, s.Fn, s.dissipated, s.elastic_steps, *s.radii,
+             *(getattr(s.bond, name) for name in scalars)) for n, s in softening_bonds.items()]
+    return np.array(rows, float).reshape(-1, 8 + len(scalars))
 
 
 def from_rows(rows, laws):
     """{number: SofteningBond} of what `to_rows` gave; laws: of all bonds."""
     found = {}
-    for n, overlap, un, Fn, dissipated, elastic_steps, *values in rows.tolist():
+    for n, overlap, un, Fn, dissipated, elastic_steps, radius_1, radius_2, *values in rows.tolist():
         law = laws[int(n)]
         bond = law.initial_state()
         for name, value in zip(bond.scalars, values):
             setattr(bond, name, value)
         found[int(n)] = SofteningBond(law=law, bond=bond, overlap=overlap, un=un, Fn=Fn, dissipated=dissipated,
-                                      elastic_steps=elastic_steps)
+                                      elastic_steps=elastic_steps, radii=(radius_1, radius_2))
     return found

@@ -106,11 +106,11 @@ class Wear(WearEngine):
         self.on_removal(removed, loose)
 
     def state(self):
-        return {**super().state(), **self.erosion.state()}
+        return {**super().state(), "erosion": self.erosion.state()}
 
     def restore(self, state):
         super().restore(state)
-        self.erosion.restore(state)
+        self.erosion.restore(state["erosion"])
 
     def log(self):
         return {"mass_lost": (self.erosion.mass_fraction_lost, "-"),

@@ -8,7 +8,7 @@ import sys
 from types import SimpleNamespace
 
 import numpy as np
-from yade import O
+from yade import O, utils
 
 from rockwear.engines.heat import Heat
 from rockwear.kernels.boundary import area_vectors, prism
@@ -25,6 +25,8 @@ BLOCK = np.array([[0, 0], [LENGTH, 0], [LENGTH, HEIGHT], [0, HEIGHT]])
 FIRST = 300.0
 STEP = 1e-3
 C_ROCK = 5.0
+ROCK = np.array([[1.0, 1.0, 0.0], [2.0, 1.0, 0.0]])
+O.bodies.append([utils.sphere(place, 2e-3) for place in ROCK.tolist()])
 
 
 def fill():
@@ -58,9 +60,10 @@ class Engines:
     """What the heat engine asks of contacts and rock; `put` sets the next visit's friction and contacts."""
 
     def __init__(self, pieces, dimension):
-        self.pieces, self.dimension = pieces, dimension
+        self.pieces = pieces
         self.pairs, self.contacts = np.empty((0, 2), int), []
         self.count, self.radii, self.fixed = 2, np.full(2, 2e-3), np.zeros(2, bool)
+        self.positions = ROCK[:, :dimension]
         self.put({}, {})
 
     def put(self, work, touching):
@@ -82,9 +85,6 @@ class Engines:
 
     def in_contact(self):
         return np.zeros(0, bool)
-
-    def current_positions(self):
-        return np.array([[1.0, 1.0, 0.0], [2.0, 1.0, 0.0]])[:, :self.dimension]
 
 
 def engine(body, engines, **changes):
