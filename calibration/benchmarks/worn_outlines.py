@@ -80,7 +80,7 @@ def unexplained(tool):
 
 
 def face(polygon, volume):
-    """The exact flat face after `volume` (m3) of wear: height (m) along DOWN, its direction, its ends (m) along that."""
+    """The exact flat face after `volume` (m3) of wear: height (m) along DOWN, direction, ends (m) along it."""
     target, height = exact(polygon, volume)
     along = np.array([DOWN[1], -DOWN[0]])
     return height, along, *sorted(float(p @ along) for p in target if abs(p @ DOWN - height) < 1e-9)

@@ -23,8 +23,8 @@ RIPPER = dict(velocities=0.4, wear_passes=0, report="false", snapshot_period=1, 
 QUICK = dict(radius_min=2e-3, radius_max=3e-3, Rn=0.2e6, Rt=2e6)
 """Twice the discs at the same macroscopic strength."""
 SCENES = {"ripper at 0.4 m/s": ("yade_scripts/ripper_temperature.py", RIPPER, {
-    "after a pass": "hottest_after_the_pass_0.4", "quasi-stationary, shank held": "hottest_fixed_root_0.4",
-    "quasi-stationary, shank insulated": "hottest_insulated_root_0.4"})}
+    "after a pass": "hottest_after_the_pass_0.4", "quasi-stationary, shank held": "hottest_fixed_shank_0.4",
+    "quasi-stationary, shank insulated": "hottest_insulated_shank_0.4"})}
 
 
 def size(radius):
