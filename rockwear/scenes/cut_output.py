@@ -46,7 +46,8 @@ class CutOutput(Output):
         scene, contact, bodies = self.scene, self.scene.tool.contact, self.scene.tool.bodies
         unit, joule = scene.units.force, scene.units.energy
         elapsed, impulse = scene.recorder.elapsed(), contact.take_impulse()
-        bodies.connect()
+        if bodies.angular_velocity:
+            bodies.connect()
         # Along the direction in which the tool looks, normal to it, and across.
         force = np.append(impulse[:2] @ bodies.pose.rotation, impulse[2])
         force = force / elapsed if elapsed else force
