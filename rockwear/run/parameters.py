@@ -73,7 +73,7 @@ def _parser(groups):
     parser = argparse.ArgumentParser(
         usage=f"yade -n -x {sys.argv[0]} [--name value ...]", add_help=False, allow_abbrev=False, exit_on_error=False,
         argument_default=argparse.SUPPRESS, formatter_class=_formatter)
-    sections, known = {}, flat(groups)
+    sections, known, declared = {}, flat(groups), flat(groups)
     for group in groups:
         title = group.title if isinstance(group, Group) else "parameters"
         section = sections[title] = sections.get(title) or parser.add_argument_group(title)
@@ -82,7 +82,7 @@ def _parser(groups):
                 continue
             values = {"nargs": "?", "const": "true"} if parameter.rule is flag else {}
             section.add_argument(f"--{parameter.name}", metavar=_metavar(parameter),
-                                 help=_description(parameter).replace("%", "%%"), **values)
+                                 help=_description(parameter, declared).replace("%", "%%"), **values)
     return parser
 
 
@@ -91,10 +91,11 @@ def _metavar(parameter):
     return "|".join(options) or parameter.unit or {text: "TEXT", file: "FILE"}.get(parameter.rule, "NUMBER")
 
 
-def _description(parameter):
-    """Meaning, default with its unit, source, and the condition of use."""
+def _description(parameter, declared):
+    """Meaning, default with its unit, source, and the condition of use among the declared parameters."""
     default = f"{_word(parameter.default)} {parameter.unit}".strip()
-    used = "; ".join(f"{name} = {' or '.join(map(_word, values))}" for name, values in (parameter.when or {}).items())
+    used = "; ".join(f"{name} = {' or '.join(map(_word, values))}" for name, values in (parameter.when or {}).items()
+                     if name in declared)
     return f"{parameter.meaning} (default {default}; {parameter.source}{f'; only with {used}' if used else ''})"
 
 
