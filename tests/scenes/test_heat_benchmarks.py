@@ -1,11 +1,11 @@
-"""The heat benchmarks of M 7.6 in YADE: errors and orders, models of the sources beside ours, resuming, bad input."""
+"""The heat benchmarks of [Rojek 2003, 7.6] in YADE: errors and orders, models of the sources beside ours, resuming, bad input."""
 import signal
 
 import numpy as np
 import pytest
 
 from rockwear.kernels.conduction import PATHS
-from tests.running import ROOT, arguments, assert_as_if_never_stopped, interrupt_script, run_script
+from tests.running import ROOT, arguments, assert_as_if_never_stopped, assert_refused, interrupt_script, refusals, run_script, value
 
 SCRIPT = ROOT / "yade_scripts/heat_benchmarks.py"
 SMALL = dict(across=32, refinements=2, report="false")
@@ -13,10 +13,6 @@ SMALL = dict(across=32, refinements=2, report="false")
 
 def benchmarks(out, *flags, **values):
     return run_script(SCRIPT, *arguments({**SMALL, **values}), "--out", str(out), *flags, out=out)
-
-
-def value(run, name):
-    return run.summary["results"][name]["value"]
 
 
 def errors(run):
@@ -41,7 +37,7 @@ def test_temperatures_are_the_exact_ones_and_converge(everything, packing):
     assert (last[:, 6] < [0.005, 0.009, 0.002]).all() and (last[:, 7] < [0.004, 0.004, 0.001]).all()
 
 
-def test_the_books_close_and_only_heat_is_there(everything):
+def test_the_balance_closes_and_only_heat_is_there(everything):
     balance = everything.summary["balances"]["heat"]
     assert abs(balance["residual"]) < 1e-12 * balance["generated"] and balance["generated"] > 1e3
     assert set(everything.summary["wall_time"]["by_engine"]) == {"heat", "recorder"}
@@ -64,13 +60,17 @@ def test_stopped_and_resumed_equals_never_stopped(everything, tmp_path):
     assert_as_if_never_stopped(benchmarks(out, "--resume", **options), everything, "errors.csv")
 
 
-@pytest.mark.parametrize("values, words", [
+REFUSED = [
     ({"step_fraction": 1.2}, "step_fraction = 1.2: must be at most 1, the stable step"),
     ({"refinements": 4}, "refinements = 4: must be such that across = 32"),
     ({"benchmark": "rod"}, "benchmark = rod: must be one of all, slab_source, half_space, jump"),
-    ({"porosity": 0.5}, "porosity = 0.5"),
-])
-def test_bad_input_ends_in_one_line(tmp_path, values, words):
-    run = benchmarks(tmp_path / "out", **values)
-    lines = [line for line in run.stderr.splitlines() if line.startswith("error: ")]
-    assert run.code == 2 and len(lines) == 1 and words in lines[0] and not (tmp_path / "out").exists()
+    ({"porosity": 0.5}, "porosity = 0.5")]
+
+
+def test_bad_input_ends_in_one_line(tmp_path):
+    cases = [arguments({**SMALL, **values, "out": tmp_path / "out"}) for values, _ in REFUSED]
+    for (code, said), (_, words) in zip(refusals(SCRIPT, tmp_path, cases), REFUSED, strict=True):
+        assert_refused(code, said, words)
+    run = benchmarks(tmp_path / "out", **REFUSED[1][0])
+    assert_refused(run.code, run.stderr, REFUSED[1][1])
+    assert not (tmp_path / "out").exists()

@@ -4,7 +4,8 @@ import signal
 import numpy as np
 import pytest
 
-from tests.running import ROOT, arguments, history, interrupt_script, run_script
+from tests.running import (
+    ROOT, arguments, assert_as_if_never_stopped, assert_refused, history, interrupt_script, refusals, run_script, value)
 
 SCRIPT = ROOT / "yade_scripts/sliding_wear.py"
 
@@ -13,17 +14,13 @@ def lab(out, *flags, **values):
     return run_script(SCRIPT, *arguments(values), "--out", str(out), *flags, out=out)
 
 
-def value(run, name):
-    return run.summary["results"][name]["value"]
-
-
 @pytest.fixture(scope="module")
 def worn(tmp_path_factory):
     return lab(tmp_path_factory.mktemp("lab") / "out")
 
 
 def test_it_returns_its_k_within_a_tenth_of_a_per_cent(worn):
-    """w H / (p s) of M's first row: what was put in comes out, from the known force alone."""
+    """w H / (p s) of the first row of [Rojek 2003, table 6.2]: what was put in comes out, from the known force alone."""
     assert worn.code == 0, worn.stderr
     hardness = (500 - 9 * 156 / 200) * 9.80665e6
     k = value(worn, "worn_depth") * hardness / (885 / 26e-6 * 100)
@@ -75,7 +72,7 @@ def test_other_laws_return_theirs_where_the_pressure_is_the_nominal_one(tmp_path
 
 
 def test_more_wear_on_less_way_is_the_same_wear_until_contacts_are_too_short(tmp_path):
-    """R's two rules: what is off falls with the acceleration."""
+    """The two rules of [Rocky]: what is off falls with the wear acceleration."""
     off = [value(lab(tmp_path / str(factor), report="false", wear_acceleration=factor, slip_step=1e-6), "k_deviation")
            for factor in (5000, 50000)]
     assert -0.03 < off[1] < 5 * off[0] < 0 and off[0] > -2e-3
@@ -93,18 +90,20 @@ def test_stopped_and_resumed_equals_never_stopped(worn, tmp_path):
     out, options = tmp_path / "out", dict(checkpoint_interval=0.01)
     stopped = interrupt_script(SCRIPT, out, signal.SIGTERM, 3, **options)
     assert stopped.code == 128 + signal.SIGTERM
-    resumed = lab(out, "--resume", **options)
-    assert resumed.code == 0, resumed.stderr
-    assert resumed.summary["results"] == worn.summary["results"] and resumed.summary["balances"] == worn.summary["balances"]
-    assert (out / "history.csv").read_bytes() == (worn.out / "history.csv").read_bytes()
+    assert_as_if_never_stopped(lab(out, "--resume", **options), worn)
 
 
-@pytest.mark.parametrize("values, words", [
-    ({"wear_acceleration": 0}, "acceleration = 0: must be greater than 0"),
+REFUSED = [
+    ({"wear_acceleration": 0}, "wear_acceleration = 0: must be greater than 0"),
     ({"temperature": 20}, "temperature = 20 K: must be inside the hardness table"),
     ({"force": 1e9}, "force = 1e+09 N: must be less than hardness times area"),
-    ({"slip_step": 0.1}, "slip_step = 0.1 m: must be below a hundredth of the simulated distance")])
-def test_bad_input_ends_in_one_line(tmp_path, values, words):
-    run = lab(tmp_path / "out", **values)
-    errors = [line for line in run.stderr.splitlines() if line.startswith("error: ")]
-    assert run.code == 2 and len(errors) == 1 and words in errors[0] and not (tmp_path / "out").exists()
+    ({"slip_step": 0.1}, "slip_step = 0.1 m: must be below a hundredth of the simulated distance")]
+
+
+def test_bad_input_ends_in_one_line(tmp_path):
+    cases = [arguments({**values, "out": tmp_path / "out"}) for values, _ in REFUSED]
+    for (code, said), (_, words) in zip(refusals(SCRIPT, tmp_path, cases), REFUSED, strict=True):
+        assert_refused(code, said, words)
+    run = lab(tmp_path / "out", **REFUSED[2][0])
+    assert_refused(run.code, run.stderr, REFUSED[2][1])
+    assert not (tmp_path / "out").exists()

@@ -43,7 +43,7 @@ def test_after_breakage_yade_alone_gives_a_coulomb_contact(checks):
 def test_work_until_a_bond_is_gone_is_that_of_the_triangle(checks):
     for found in checks["work"].values():
         assert abs(found["tension"]) < 1e-6 and abs(found["shear"]) < 1e-6
-        assert found["modes"] == [1, 2] and found["unbooked"] == 0
+        assert found["modes"] == [1, 2] and found["missing"] == 0
 
 
 def test_energy_of_a_free_pair_that_flies_apart(checks):

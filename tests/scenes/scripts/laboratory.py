@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 
-from calibration.laboratory.uniaxial import PARAMETERS, UniaxialTest
+from calibration.laboratory.uniaxial import GROUPS, UniaxialTest
 from rockwear.run import main as run
-from rockwear.kernels.parameter import Parameter, choice
+from rockwear.kernels.parameter import Group, Parameter, choice
 from rockwear.model.rock import Arranged
 
 ROWS, COLUMNS, RADIUS = 7, 36, 1e-3
@@ -33,7 +33,7 @@ def lattice(v):
 
 
 def chain(v):
-    """Two discs in a row, both led."""
+    """Two discs in a row, both prescribed."""
     places = np.array([[RADIUS, RADIUS], [3 * RADIUS, RADIUS]])
     return arranged(places, 2 * RADIUS, v.rock_density)
 
@@ -45,5 +45,5 @@ class Exact(UniaxialTest):
         return {"lattice": lattice, "chain": chain}[self.v.specimen](self.v)
 
 
-SPECIMEN = Parameter("specimen", "lattice", "", choice("lattice", "chain"), "what is tested")
-run.main("exact", [*PARAMETERS, SPECIMEN], Exact)
+SPECIMEN = Group("rock", (Parameter("specimen", "lattice", "", choice("lattice", "chain"), "what is tested"),))
+run.main("exact", [*GROUPS, SPECIMEN], Exact)

@@ -13,7 +13,7 @@ from rockwear.engines.bonds import Bonds
 from rockwear.engines.softening import SofteningBond
 from rockwear.kernels.bond_laws import (
     ElasticBrittle, ElasticDamage, ElastoPlasticSoftening, NonlinearElastoPlastic, Parabolic)
-from rockwear.scenes.two_disc import lead, programme
+from rockwear.scenes.two_disc import drive_pair, programme
 
 KN, KT, RN, RT, H, MU = 2e10, 1e10, 1e5, 6e4, 1e10, 0.839
 COMMON = dict(kn=KN, kt=KT, Rn=RN, Rt=RT, mu=MU)
@@ -59,13 +59,13 @@ def random_axes(rng):
     return axes
 
 
-def let_loose():
-    """Lead the pair no longer."""
+def set_free():
+    """Drive the pair no longer."""
     O.engines = [*O.engines[:3], *base.runners({"bonds": 1}), O.engines[-1]]
 
 
 def programmes(law):
-    return {kind: deviation(law, lead(law, un, ut)) for kind, (un, ut) in programme(law, END_N, END_T, 203).items()}
+    return {kind: deviation(law, drive_pair(law, un, ut)) for kind, (un, ut) in programme(law, END_N, END_T, 203).items()}
 
 
 def random_paths(law, plane, seeds=range(8)):
@@ -77,14 +77,14 @@ def random_paths(law, plane, seeds=range(8)):
         if plane:
             ut[:, 1] = 0.0
         axes = None if plane else random_axes(rng)
-        worst = max(worst, deviation(law, lead(law, un, ut, radii=(1e-3, 1.7e-3), axes=axes, swapped=bool(seed % 2))))
+        worst = max(worst, deviation(law, drive_pair(law, un, ut, radii=(1e-3, 1.7e-3), axes=axes, swapped=bool(seed % 2))))
     return worst
 
 
 def swapping(law):
     """Difference that the order of the ids makes."""
     un, ut = random_path(np.random.default_rng(1))
-    a, b = (forces(lead(law, un, ut, radii=(1e-3, 1.7e-3), swapped=swapped)) for swapped in (False, True))
+    a, b = (forces(drive_pair(law, un, ut, radii=(1e-3, 1.7e-3), swapped=swapped)) for swapped in (False, True))
     return float(abs(a - b).max() / law.Rn)
 
 
@@ -94,10 +94,11 @@ def turning(law, steps=1000):
     YADE takes the velocity of the middle of a step with the normal of its end, so that some of it is of its own making.
     """
     worst = 0.0
-    for spin in ((0.0, 0.0, 1.0), (1.0, 0.0, 0.0)):
-        for un, ut in [*programme(law, END_N, END_T, steps).values()][2:]:
-            ut = np.column_stack([0.6 * ut, 0.8 * ut])
-            still, turned = (forces(lead(law, un, ut, spin=np.array(spin) * turn / steps)) for turn in (0, 1))
+    for un, ut in [*programme(law, END_N, END_T, steps).values()][2:]:
+        ut = np.column_stack([0.6 * ut, 0.8 * ut])
+        still = forces(drive_pair(law, un, ut))
+        for axis in ((0.0, 0.0, 1.0), (1.0, 0.0, 0.0)):
+            turned = forces(drive_pair(law, un, ut, spin=np.array(axis) / steps))
             difference = np.sort(abs(still - turned).max(axis=1))
             worst = max(worst, float(difference[-3]) / law.Rn)
     return worst
@@ -108,7 +109,7 @@ def coulomb_afterwards(law):
     rng = np.random.default_rng(3)
     un, ut = random_path(rng)
     un, ut = np.concatenate([[0.0, 2 * END_N], un - 2e-6]), np.vstack([np.zeros((2, 2)), ut])
-    response = lead(law, un, ut, axes=random_axes(rng))
+    response = drive_pair(law, un, ut, axes=random_axes(rng))
     Fn, Ft = np.minimum(law.kn * response.un, 0.0), np.zeros(2)
     worst, before = 0.0, response.ut[1]
     for k in range(2, len(un)):
@@ -120,21 +121,21 @@ def coulomb_afterwards(law):
 
 
 def work_until_gone(law):
-    """Energy booked, and the work until a bond is gone, in tension and in shear."""
+    """Energy released, and the work until a bond is gone, in tension and in shear."""
     exact = [0.5 * law.Rn**2 * (1 / law.kn + 1 / law.H), 0.5 * law.Rt**2 * (1 / law.kt + 1 / law.H)]
     found = []
     for kind in ("tension, unloading and reloading", "shear"):
-        response = lead(law, *programme(law, END_N, END_T, 2003)[kind])
+        response = drive_pair(law, *programme(law, END_N, END_T, 2003)[kind])
         crack, = response.bonds.cracks
         found.append((crack.energy, crack.mode, response.bonds.energy_released - crack.energy))
     return {"tension": found[0][0] / exact[0] - 1, "shear": found[1][0] / exact[1] - 1,
-            "modes": [found[0][1], found[1][1]], "unbooked": max(abs(rest) for *_, rest in found)}
+            "modes": [found[0][1], found[1][1]], "missing": max(abs(rest) for *_, rest in found)}
 
 
 def flying_apart(law):
-    """A free pair driven apart, turning and shearing: energy that is in no book, over the energy booked."""
-    bonds = lead(law, np.zeros(2), np.zeros(2)).bonds
-    let_loose()
+    """A free pair driven apart, turning and shearing: energy that is in no balance, over the energy released."""
+    bonds = drive_pair(law, np.zeros(2), np.zeros(2)).bonds
+    set_free()
     for body, (vel, spin) in zip(O.bodies, [((0.4, -0.2, 0.1), (30, -20, 80)), ((-0.3, 1.2, 0.2), (-40, 10, 60))]):
         body.state.blockedDOFs = ""
         body.state.mass, body.state.inertia = 5.0, (3e-6,) * 3
@@ -159,10 +160,10 @@ def resuming(law):
     un += np.linspace(0.0, 8e-6, len(un))
 
     def half(resumed):
-        response = lead(law, 0.2 * un, 0.2 * ut)
+        response = drive_pair(law, 0.2 * un, 0.2 * ut)
         bonds = response.bonds
         state = bonds.state()
-        let_loose()
+        set_free()
         O.bodies[1].state.vel, O.bodies[1].state.angVel = Vector3(0.02, 0.05, 0.0), Vector3(3.0, 5.0, -8.0)
         if resumed:
             O.save(path)
@@ -212,7 +213,7 @@ def broken_on_purpose():
     found = {}
     for name, patch in patches.items():
         with patch:
-            found[name] = max(deviation(law, lead(law, un, ut)) for un in (0.7 * ut, -ut / 10))
+            found[name] = max(deviation(law, drive_pair(law, un, ut)) for un in (0.7 * ut, -ut / 10))
     return found
 
 
