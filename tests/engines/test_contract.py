@@ -9,6 +9,7 @@ NAMES = {"bonds", "tool_contact", "rock_friction", "separation", "path_follower"
          "expansion", "background_damping", "recorder", "energy_guard", "shear_rotation", "platens", "failure",
          "dead_load"}
 
+
 @pytest.fixture(scope="module")
 def found(tmp_path_factory):
     folder = tmp_path_factory.mktemp("contract")

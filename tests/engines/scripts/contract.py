@@ -15,7 +15,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
-from yade import FrictViscoMat, NewtonIntegrator, O, Subdomain, Vector3
+from yade import FrictViscoMat, NewtonIntegrator, O, Subdomain
 
 import rockwear.engines
 from rockwear.engines import access, base
