@@ -13,12 +13,14 @@ SMALL = dict(width=0.06, height=0.04, radius_min=1.5e-3, radius_max=2.2e-3, toot
              rake=10, clearance=10, tip_radius=2e-3, depth_of_cut=0.01, start_up=0.0012, cycles=1, cycle_time=4e-4,
              snapshot_period=4e-4)
 """A test tooth in miniature: every mechanism of the real one in a few seconds."""
-BLOCK = dict(width=0.28, height=0.1, depth=0.16, scale_factor=1, radius=0.012, tool_radius=3e-3, breadth=0.04, tooth_height=0.06,
-             tooth_width=0.04, depth_of_cut=0.026, lowering_velocity=0.5, velocity=0.5, cut_time=0.09, snapshot_period=0.03)
+BLOCK = dict(width=0.28, height=0.1, depth=0.16, scale_factor=1, radius=0.012, tool_radius=3e-3, breadth=0.04,
+             tooth_height=0.06, tooth_width=0.04, depth_of_cut=0.026, lowering_velocity=0.5, velocity=0.5, cut_time=0.09,
+             snapshot_period=0.03)
 """A cut as of [Rojek 2003, 13.3] through 340 spheres."""
-BLOCK_OF_TRIANGLES = {**{name: v for name, v in BLOCK.items() if name != "tool_radius"}, "facet": 0.02, "tool_kn": 1e7, "tool_kt": 1e7}
-"""The same by a tooth of triangles. Contacts are ten times as stiff as there: overlaps of 12 % of a radius at a sharp edge cost
-the energy balance 4 %."""
+BLOCK_OF_TRIANGLES = {**{name: v for name, v in BLOCK.items() if name != "tool_radius"}, "facet": 0.02, "tool_kn": 1e7,
+                      "tool_kt": 1e7}
+"""The same by a tooth of triangles. Contacts are ten times as stiff as there: overlaps of 12 % of a radius at a sharp
+edge cost the energy balance 4 %."""
 
 
 def arguments(values):
@@ -37,7 +39,8 @@ def start(script, words=(), threads=1, **options):
 def finish(process, out=None):
     """Wait for it. -> exit code, what it said, and the summary if there is one."""
     stdout, stderr = process.communicate(timeout=300)
-    summary = json.loads((out / "summary.json").read_text(encoding="utf-8")) if out and (out / "summary.json").exists() else None
+    file = out / "summary.json" if out else None
+    summary = json.loads(file.read_text(encoding="utf-8")) if file and file.exists() else None
     return SimpleNamespace(code=process.returncode, stdout=stdout, stderr=stderr, summary=summary, out=out)
 
 
@@ -47,7 +50,7 @@ def run_script(script, *words, out=None, **options):
 
 
 def checks_of(name, folder, *words):
-    """What tests/scenes/scripts/NAME.py found: a script that makes all its checks in one process, and writes them as JSON."""
+    """What tests/scenes/scripts/NAME.py, a script that makes all its checks in one process, wrote as JSON."""
     file = folder / "checks.json"
     done = run_script(ROOT / f"tests/scenes/scripts/{name}.py", *words, str(file))
     assert done.code == 0, done.stderr
@@ -55,7 +58,7 @@ def checks_of(name, folder, *words):
 
 
 def refusals(script, folder, cases):
-    """[(exit code, what it said)] of a script started with each of the lists of words `cases`, all in one process of YADE."""
+    """[(exit code, what it said)] of a script started with each list of words of `cases`, in one process of YADE."""
     file = folder / "cases.json"
     file.write_text(json.dumps([[str(word) for word in words] for words in cases]), encoding="utf-8")
     return [tuple(pair) for pair in checks_of("refusals", folder, str(script), str(file))]
@@ -87,10 +90,11 @@ def assert_as_if_never_stopped(resumed, never, *tables):
         assert (resumed.out / name).read_bytes() == (never.out / name).read_bytes()
 
 
-def tooth_cycles(out, *flags, **values):
-    """Run the miniature test tooth with some values of one's own."""
+def tooth_cycles(out, *flags, without=(), **values):
+    """Run the miniature test tooth with some values of one's own, and without some of the miniature's."""
     script = ROOT / "yade_scripts/tooth_cycles.py"
-    return run_script(script, *arguments({**SMALL, **values}), "--out", str(out), *flags, out=out)
+    given = {name: value for name, value in {**SMALL, **values}.items() if name not in without}
+    return run_script(script, *arguments(given), "--out", str(out), *flags, out=out)
 
 
 tooth_cycles.__test__ = False
@@ -124,4 +128,3 @@ def history(out):
     lines = (out / "history.csv").read_text(encoding="utf-8").splitlines()
     table = np.array([[float(cell) for cell in line.split(",")] for line in lines[1:]])
     return {name: table[:, i] for i, name in enumerate(lines[0].split(","))}
-

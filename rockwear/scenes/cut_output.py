@@ -87,9 +87,9 @@ class CutOutput(Output):
         scene = self.scene
         shot, rock = self.snapshot(), scene.rock
         fields = {"diameter": 2 * rock.radii, "broken_bonds": shot["broken_bonds"]}
-        places, of_tool = scene.tool.points()
         if scene.heat:
             fields["temperature"] = shot["temperature"][:rock.count]
+        places, of_tool = scene.tool.points(scene.heat.temperature_of_pieces() if scene.heat else None)
         vtk.write(folder / f"rock.{number:04d}.vtk", shot["rock_positions"], fields)
         turned = scene.tool.bodies.pose.of(places[:, :2])
         vtk.write(folder / f"tool.{number:04d}.vtk", np.column_stack([turned, places[:, 2:]]), of_tool)

@@ -132,8 +132,9 @@ class ToolAssembly(ABC):
         """{name: array} of now."""
 
     @abstractmethod
-    def points(self):
-        """(places (n, d) m in the tool's frame, {field: (n,)}) for ParaView."""
+    def points(self, temperature):
+        """(places (n, d) m in the tool's frame, {field: (n,)}) for ParaView; temperature: (pieces,) K, None without
+        heat."""
 
     @abstractmethod
     def results(self):
@@ -195,10 +196,12 @@ class ParticleAssembly(ToolAssembly):
         return {"alive": erosion.alive, "worn_depth": erosion.stored / erosion.areas,
                 "surface": np.array(sorted(erosion.surface), int)}
 
-    def points(self):
+    def points(self, temperature):
         alive = self.model.erosion.alive
-        return self.model.positions[alive], {"diameter": 2 * self.model.radii[alive],
-                                             "worn_depth": self.snapshot()["worn_depth"][alive]}
+        fields = {"diameter": 2 * self.model.radii[alive], "worn_depth": self.snapshot()["worn_depth"][alive]}
+        if temperature is not None:
+            fields["temperature"] = temperature[alive]
+        return self.model.positions[alive], fields
 
     def results(self):
         erosion, unit = self.model.erosion, self.units.volume
@@ -284,8 +287,13 @@ class FacetAssembly(ToolAssembly):
         return {"tool_vertices": boundary.vertices, "tool_facets": boundary.facets,
                 "worn_volume": self.wear_engine.worn}
 
-    def points(self):
-        return self.model.boundary.vertices, {"worn_depth": self.model.depth_below}
+    def points(self, temperature):
+        boundary, fields = self.model.boundary, {"worn_depth": self.model.depth_below}
+        if temperature is not None:
+            # The mean of the facets at each vertex.
+            vertex, of_facet = boundary.facets.ravel(), np.repeat(temperature, boundary.facets.shape[1])
+            fields["temperature"] = np.bincount(vertex, of_facet) / np.bincount(vertex)
+        return boundary.vertices, fields
 
     def results(self):
         # Where the shape is kept, what each facet would have gone back.

@@ -10,7 +10,8 @@ from tests.running import ROOT, SMALL, arguments, run_script
 def found(tmp_path_factory):
     out = tmp_path_factory.mktemp("bonding") / "out"
     run = run_script(ROOT / "tests/scenes/scripts/bonding.py",
-                     *arguments({**SMALL, "kn": 18e9, "kt": 6e9, "mu": 0.6, "heat": "false", "background_damping": 0, "out": out}))
+                     *arguments({**SMALL, "kn": 18e9, "kt": 6e9, "mu": 0.6, "heat": "false", "background_damping": 0,
+                                 "out": out}))
     assert run.code == 0, run.stderr
     return json.loads(next(line for line in run.stdout.splitlines() if line.startswith("RESULT"))[7:])
 

@@ -72,7 +72,7 @@ def test_friction_heat_of_a_sliding_block_is_exact_in_both_bodies(found):
     assert block["spread"] < 1e-9
 
 
-def test_a_cut_with_expansion_keeps_its_books_and_resumes_to_the_last_bit(tmp_path):
+def test_a_cut_with_expansion_closes_its_balances_and_resumes_to_the_last_bit(tmp_path):
     whole, out = tooth_cycles(tmp_path / "whole", **HOT), tmp_path / "out"
     assert whole.code == 0, whole.stderr
     balance = whole.summary["balances"]["energy"]
@@ -90,7 +90,7 @@ def test_without_expansion_there_is_no_engine_for_it(tmp_path):
 
 
 @pytest.mark.parametrize("fraction, error", [(0.8, 0.07), (0.08, 5e-4)])
-def test_what_a_disc_loses_against_the_tool_is_in_the_accounts_of_friction_and_dashpot(found, fraction, error):
+def test_what_a_disc_loses_against_the_tool_is_in_the_sums_of_friction_and_dashpot(found, fraction, error):
     cases = [case for case in found["collisions"] if case["fraction"] == fraction]
     assert [case["angle"] for case in cases] == [20, 45, 70]
     for case in cases:
@@ -98,7 +98,7 @@ def test_what_a_disc_loses_against_the_tool_is_in_the_accounts_of_friction_and_d
         assert case["friction"] + case["dashpot"] == pytest.approx(case["lost"], rel=error)
 
 
-def test_friction_of_a_collision_is_good_at_a_step_where_yades_own_account_is_lost(found):
+def test_friction_of_a_collision_is_good_at_a_step_where_yades_own_sum_is_lost(found):
     by_case = {(case["angle"], case["fraction"]): case for case in found["collisions"]}
     for angle in (20, 45):
         fine = by_case[angle, 0.08]["friction"]

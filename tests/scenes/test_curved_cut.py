@@ -29,7 +29,7 @@ def test_its_work_is_that_of_all_forces_and_torques(curved):
     assert value(curved, "cutting_work") == pytest.approx(value(curved, "power_work"), rel=1e-9)
 
 
-def test_its_energy_book_closes(curved):
+def test_its_energy_balance_closes(curved):
     balance = curved.summary["balances"]["energy"]
     assert balance["tool_work"] > 100
     assert abs(balance["residual"]) < 0.02 * balance["tool_work"]

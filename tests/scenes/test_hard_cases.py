@@ -25,12 +25,12 @@ def test_torn_in_one_step_everything_is_gone(checks):
         assert found["broken"] == 1.0 and abs(found["residual"]) < 1e-12
 
 
-def test_the_energy_book_closes_where_all_bonds_break_within_a_few_steps(checks):
+def test_the_energy_balance_closes_where_all_bonds_break_within_a_few_steps(checks):
     for law, found in checks["torn in a few steps"].items():
         assert abs(found["residual"]) < (0.01 if law.endswith("weak in shear") else 1e-8)
 
 
-def test_the_energy_book_closes_where_fragments_press_and_slide(checks):
+def test_the_energy_balance_closes_where_fragments_press_and_slide(checks):
     """What is left is the order of the step: contacts that close and open, friction that is sampled."""
     for kind in ("sheared", "crushed"):
         assert max(abs(found["residual"]) for found in checks[kind].values()) < 0.03
@@ -78,7 +78,7 @@ def test_soft_bonds_sheared_as_contacts_move_break_with_their_energy(checks):
 
 
 def test_a_spinning_chip_gains_no_energy(checks):
-    """By YADE's rule it does: kernels.turning."""
+    """By YADE's rule it does: kernels.shear_rotation."""
     gained, whole = checks["spinning"]["by YADE's rule"]
     assert whole and gained > 0.2
     kept, whole = checks["spinning"]["corrected"]

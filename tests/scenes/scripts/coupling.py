@@ -42,11 +42,11 @@ def arranged(positions, radii=D / 2, pairs=None, fixed=()):
     """Discs at given places, those that touch bonded."""
     positions = np.asarray(positions, float)
     count, radii = len(positions), np.broadcast_to(radii, len(positions)).astype(float)
-    held = np.zeros(count, bool)
-    held[list(fixed)] = True
+    is_fixed = np.zeros(count, bool)
+    is_fixed[list(fixed)] = True
     masses = 2500 * np.pi * radii**2
     pairs = contacts(positions, radii, 1e-9) if pairs is None else np.reshape(pairs, (-1, 2)).astype(int)
-    return SimpleNamespace(positions=positions, radii=radii, count=count, fixed=held, masses=masses,
+    return SimpleNamespace(positions=positions, radii=radii, count=count, fixed=is_fixed, masses=masses,
                            inertias=0.5 * masses * radii**2, pairs=pairs)
 
 
@@ -141,7 +141,7 @@ def free():
 
 
 def grip(a, kelvin, shortened=0.0):
-    """Force (N) with which the two ends of a specimen are held, when it is heated, or shortened by that strain."""
+    """Force (N) with which the two ends of a specimen are fixed, when it is heated, or shortened by that strain."""
     x = a.rock.positions[:, 0]
     left, right = np.flatnonzero(x < x.min() + D), np.flatnonzero(x > x.max() - D)
     for i in (*left, *right):
@@ -155,7 +155,7 @@ def grip(a, kelvin, shortened=0.0):
 
 
 def constrained():
-    """A lattice held at its ends, sides free: E alpha dtheta. Held everywhere: E alpha dtheta/(1 - nu)."""
+    """A lattice fixed at its ends, sides free: E alpha dtheta. Fixed everywhere: E alpha dtheta/(1 - nu)."""
     rows, kelvin = 7, 10.0
     rock = arranged(lattice(rows, 30))
     # The section over which the lattice's force is a stress: see scripts/laboratory.py.
@@ -173,11 +173,12 @@ def constrained():
     stress = -0.5 * np.einsum("ki,kj->ij", force[middle], branch[middle]) / (0.5 * math.sqrt(3) * D**2)
     return {"uniaxial": uniaxial, "E_alpha_dT": E * ALPHA * kelvin, "packing_heated": heated,
             "packing_pressed": pressed, "plane": (-stress).tolist(),
-            "plane_expected": math.sqrt(3) * KN * ALPHA * kelvin, "work": a.expansion.work, "stored": a.bonds.elastic_energy()}
+            "plane_expected": math.sqrt(3) * KN * ALPHA * kelvin, "work": a.expansion.work,
+            "stored": a.bonds.elastic_energy()}
 
 
 def followed():
-    """Two overlapping discs held at an opening and heated, then cooled: each law's own force at the same opening."""
+    """Two overlapping discs fixed at an opening and heated, then cooled: each law's own force at the same opening."""
     found = {}
     common = dict(kn=KN, kt=KT, Rn=1e5, Rt=1e5, mu=MU)
     laws = {"brittle": ElasticBrittle(**common), "damage": ElasticDamage(H=1e10, **common),
@@ -237,7 +238,7 @@ def heated_disc():
 
 
 def two_spinning(period, duration=0.02):
-    """Overlap of two discs held in place that rub on each other, after `duration`, and its exact exponential growth.
+    """Overlap of two fixed discs that rub on each other, after `duration`, and its exact exponential growth.
 
     Friction heats them, they expand, press more and heat more: d' = r alpha chi mu kn d v / C.
     """
@@ -261,9 +262,9 @@ def two_spinning(period, duration=0.02):
     network = HeatNetwork(capacity=np.full(2, capacity), temperature=300.0, edges=NO_PATHS[0], conductance=0.0)
     untouched = SimpleNamespace(take_heating=lambda: (np.empty(0), np.zeros(2), {}))
     heat = Heat(network=network, bonds=bonds, rock_friction=friction, tool_contact=untouched, rock=rock,
-                body=body_of_discs(np.empty((0, 2)), radius), heat_fraction=chi, tool_share=0.5, contact_conductance=0.0,
-                convection=0.0, ambient=300.0, rock_paths=NO_PATHS, tool_paths=NO_PATHS, surface_period=1.0, conduction=False,
-                period=steps)
+                body=body_of_discs(np.empty((0, 2)), radius), heat_fraction=chi, tool_share=0.5,
+                contact_conductance=0.0, convection=0.0, ambient=300.0, rock_paths=NO_PATHS, tool_paths=NO_PATHS,
+                surface_period=1.0, conduction=False, period=steps)
     expansion = Expansion(coefficient=alpha, rock=rock, reference=300.0, temperature=lambda: network.temperature,
                           bonds=bonds, loose=lambda: friction.contacts, period=steps)
     O.run(10, True)
@@ -315,8 +316,8 @@ def sliding_block():
     share, chi = effusivity_share(e_tool, e_rock), 0.85
     heat = Heat(network=network, bonds=bonds, rock_friction=friction, tool_contact=contact, rock=rock,
                 body=body_of_discs(places, radius), heat_fraction=chi, tool_share=share, contact_conductance=0.0,
-                convection=0.0, ambient=300.0, rock_paths=NO_PATHS, tool_paths=NO_PATHS, surface_period=1.0, conduction=False,
-                period=100)
+                convection=0.0, ambient=300.0, rock_paths=NO_PATHS, tool_paths=NO_PATHS, surface_period=1.0,
+                conduction=False, period=100)
     O.dt = 1e-8
     insert(bonds, contact, friction, heat)
     kn, kt, load = TOOL.kn, TOOL.kt, 0.0
@@ -354,8 +355,8 @@ def collisions():
             yade_scene.put_loop(rock=UNBREAKABLE, tool=TOOL)
             O.bodies[0].mat = O.materials["loose rock"]
             O.bodies[0].state.vel = (speed * math.cos(thrown), speed * math.sin(thrown), 0)
-            body = yade_scene.finite_disc((1.5 * radius + 1e-6, 0.0), radius / 2, material="steel", mask=yade_scene.TOOL_MASK, mass=0.0,
-                                     inertia=0.0)
+            body = yade_scene.finite_disc((1.5 * radius + 1e-6, 0.0), radius / 2, material="steel",
+                                          mask=yade_scene.TOOL_MASK, mass=0.0, inertia=0.0)
             body.state.blockedDOFs = "xyzXYZ"
             bodies = {0: O.bodies.append(body)}
             tool = SimpleNamespace(count=1, body_of=bodies, ids=list(bodies.values()),
@@ -374,13 +375,14 @@ def collisions():
             if base.failures:
                 raise base.failures.pop()
             law = law_functor(Law2_ScGeom_FrictViscoPhys_CundallStrackVisco)
-            found.append({"angle": angle, "fraction": fraction, "lost": before - kinetic(), "friction": contact.friction,
-                          "dashpot": contact.dashpot_dissipated, "yade": law.plasticDissipation(),
-                          "parted": O.interactions.countReal() == 0})
+            found.append({"angle": angle, "fraction": fraction, "lost": before - kinetic(),
+                          "friction": contact.friction, "dashpot": contact.dashpot_dissipated,
+                          "yade": law.plasticDissipation(), "parted": O.interactions.countReal() == 0})
     return found
 
 
-CHECKS = {check.__name__: check for check in (free, constrained, followed, heated_disc, staggered, sliding_block, collisions)}
+CHECKS = {check.__name__: check for check in (free, constrained, followed, heated_disc, staggered, sliding_block,
+                                              collisions)}
 *wanted, file = sys.argv[1:]
 with open(file, "w", encoding="utf-8") as stream:
     json.dump({name: CHECKS[name]() for name in wanted}, stream)

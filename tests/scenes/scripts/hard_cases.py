@@ -1,7 +1,7 @@
 """Hard cases of the bond laws in YADE; writes {check: {case: numbers}} to the file named last.
 
 A lattice of discs is torn, sheared or crushed by its own velocity; discs of a breaking lattice are erased; a bond is
-led around its peak.
+driven around its peak.
 """
 import json
 import math
@@ -66,20 +66,20 @@ def bonded(rock, law, **loop):
 
 def moving_lattice(law, gradient, *first, ratcheting_free=True):
     """Bonded rock with a linear field of velocity (1/s), free at its edges; engines `first` are visited before all.
-    -> its engine of bonds, and a function that gives the energy in no book (J)."""
+    -> its engine of bonds, and a function that gives the energy that only the balance holds (J)."""
     rock = lattice()
     bonds = bonded(rock, law, ratcheting_free=ratcheting_free)
-    friction = RockFriction(bonds=bonds, motion=VelocityIncrement(masses=rock.masses, inertias=rock.inertias, radii=rock.radii,
-                                                          fixed=rock.fixed))
+    increment = VelocityIncrement(masses=rock.masses, inertias=rock.inertias, radii=rock.radii, fixed=rock.fixed)
+    friction = RockFriction(bonds=bonds, motion=increment)
     for i, (x, y) in enumerate((rock.positions - rock.positions.mean(axis=0)) @ np.transpose(gradient)):
         O.bodies[i].state.vel = (x, y, 0.0)
     O.dt = TIME_STEP
     insert(*first, bonds, friction, Separation(bonds, period=50))
 
-    def in_no_book():
+    def energy():
         return (utils.kineticEnergy() + bonds.elastic_energy() + friction.elastic_energy() + bonds.energy_released
                 + friction.total)
-    return bonds, in_no_book
+    return bonds, energy
 
 
 def run(steps):
@@ -156,7 +156,7 @@ def erased(law):
 
 
 def cycled(law, seed=4, legs=60):
-    """A bond led to and fro around its peak: deviation from the law, and how often YADE's law took it back."""
+    """A bond driven to and fro around its peak: deviation from the law, and how often it returned to YADE's law."""
     rng = np.random.default_rng(seed)
     returns = [0]
     return_to_yade = Bonds._return_to_yade
@@ -177,7 +177,7 @@ def cycled(law, seed=4, legs=60):
 
 
 def cycled_without_new_normals():
-    """The same, the engine broken on purpose: after a return to YADE's law the shear force is found as if nothing had slipped."""
+    """The same, the engine broken on purpose: after a return to YADE's law the shear force forgets what has slipped."""
     with mock.patch.object(BondingNormals, "set_elastic", lambda self, n, interaction: None):
         return cycled(LAWS["plastic"])["deviation"]
 
@@ -216,7 +216,7 @@ def squeezed(ratcheting_free, finer=1):
 
 def soft(seed):
     """A lattice whose bonds stretch by a twentieth of a disc before they break, squeezed and sheared until most have.
-    -> share of broken bonds, energy in no book over that put in."""
+    -> share of broken bonds, residual of the energy over that put in."""
     law = ElasticBrittle(Rn=1e6, Rt=1e7, **SPRING)
     bonds, energy = moving_lattice(law, SQUEEZE, ratcheting_free=False)
     chance = np.random.default_rng(seed)
@@ -230,7 +230,8 @@ def soft(seed):
 
 def spinning(corrected):
     """A chip of four spheres, pressed together and bonded so, that spins about a slanting axis and swings undamped, as
-    soft and fast as in M 13. -> energy gained over that put in, after 20 ms; whether all bonds are there."""
+    soft and fast as in [Rojek 2003, ch. 13]. -> energy gained over that put in, after 20 ms; whether all bonds are
+    there."""
     law = ElasticBrittle(kn=1.5e6, kt=1.5e6, mu=MU, Rn=1e6, Rt=1e6)
     radius, angular_velocity, step = 13.5e-3, np.array([900.0, 1000.0, 1500.0]), 3e-5
     places = 0.95 * radius / math.sqrt(2) * np.array([(1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1)])

@@ -53,8 +53,8 @@ def spy(add):
 
 
 def watch_newcomers():
-    """The force of each uncovered particle in the step in which it first meets rock, over the most that an approach from
-    outside may bring: what a step's way loads the spring by, and the dashpot."""
+    """The force of each uncovered particle in the step in which it first meets rock, over the most that an approach
+    from outside may bring: what a step's way loads the spring by, and the dashpot."""
     for body in sorted(newcomers):
         if not O.bodies[body]:
             newcomers.remove(body)
@@ -103,8 +103,8 @@ wear.act()
 if scene.heat:
     scene.heat.act()
 balances = {name: balance for name, (balance, _) in scene.output.balances().items()}
-print("JSON" + json.dumps({"removed": int(np.sum(~tool.erosion.alive)), "overlaps": found, "pushes": pushes, "below": below, "unlisted": sorted(unlisted),
-                           "balances": balances, "stored_heat": float(scene.heat.network.heat_content)},
+print("JSON" + json.dumps({"removed": int(np.sum(~tool.erosion.alive)), "overlaps": found, "pushes": pushes,
+                           "below": below, "unlisted": sorted(unlisted), "balances": balances},
                           default=lambda x: x.item()))
 sys.stdout.flush()
 os._exit(0)
