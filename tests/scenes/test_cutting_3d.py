@@ -1,5 +1,4 @@
-"""Cuts in space, in miniature (M 13): balances close, wear is Archard's, a loose fill weighs what it weighs, runs resume."""
-import json
+"""Cuts in space, in miniature [Rojek 2003, ch. 13]: balances close, wear is Archard's, a fill has its weight, runs resume."""
 import signal
 
 import numpy as np
@@ -10,18 +9,13 @@ from rockwear.kernels.boundary import check_boundary, distance, volume
 from rockwear.report.folder import RunFolder, read_history
 from rockwear.report.views import wear_triangles
 
-from tests.running import (ROOT, arguments, assert_as_if_never_stopped, finish, history, interrupt_script, run_script,
-                       start)
+from tests.running import (
+    BLOCK, BLOCK_OF_TRIANGLES, ROOT, arguments, assert_as_if_never_stopped, assert_refused, checks_of, history, interrupt_script,
+    last_snapshot, refusals, run_script, value)
 
-BONDED = dict(width=0.28, height=0.1, depth=0.16, scale_factor=1, radius=0.012, tool_radius=3e-3, breadth=0.04, tooth_height=0.06,
-              tooth_width=0.04, depth_of_cut=0.026, lowering_velocity=0.5, velocity=0.5, cut_time=0.09, snapshot_period=0.03)
-"""A cut as of M 13.3 through 340 spheres."""
-FACETED = {**{name: v for name, v in BONDED.items() if name != "tool_radius"}, "facet": 0.02, "tool_kn": 1e7, "tool_kt": 1e7}
-"""The same by a tooth of triangles. Contacts are ten times as stiff as M's: overlaps of 12 % of a radius at a sharp edge cost
-the energy book 4 %."""
 LOOSE = dict(width=0.3, height=0.08, depth=0.17, scale_factor=1, radius=0.012, breadth=0.04, tooth_height=0.08, tooth_width=0.04,
              depth_of_cut=0.026, freeboard=0.03, settling=0.5, lowering_velocity=0.3, cut_time=0.1, start=0.16, facet=0.03)
-"""A fill as of M 13.1."""
+"""A fill as of [Rojek 2003, 13.1]."""
 
 
 def scene(name, out, *flags, **values):
@@ -29,16 +23,7 @@ def scene(name, out, *flags, **values):
     return run_script(ROOT / f"yade_scripts/{name}.py", *arguments(values), "--out", str(out), *flags, out=out)
 
 
-def value(run, name):
-    return run.summary["results"][name]["value"]
-
-
-def last_snapshot(out):
-    with np.load(sorted((out / "snapshots").glob("*.npz"))[-1]) as arrays:
-        return dict(arrays)
-
-
-def books_close(run, part):
+def assert_balances_close(run, part):
     energy = run.summary["balances"]["energy"]
     assert energy["tool_work"] > 1 and abs(energy["residual"]) < part * energy["tool_work"]
     friction = run.summary["balances"]["friction"]
@@ -48,14 +33,14 @@ def books_close(run, part):
 @pytest.fixture(scope="module")
 def worn(tmp_path_factory):
     """Model II in miniature."""
-    run = scene("cutting_3d_wear", tmp_path_factory.mktemp("worn") / "run", "--vtk", **BONDED)
+    run = scene("cutting_3d_wear", tmp_path_factory.mktemp("worn") / "run", "--vtk", **BLOCK)
     assert run.code == 0, run.stderr
     return run
 
 
-def test_a_tooth_of_particles_breaks_bonds_and_books_its_work(worn):
+def test_a_tooth_of_particles_breaks_bonds_and_its_work_is_balanced(worn):
     assert value(worn, "tensile_cracks") > 10 and value(worn, "mean_cutting_force") > 0
-    books_close(worn, 0.02)
+    assert_balances_close(worn, 0.02)
 
 
 def test_worn_volume_is_archards_and_none_goes(worn):
@@ -84,17 +69,17 @@ def test_volumes_have_their_unit(worn):
 
 def test_fewer_samples_of_the_contacts_find_the_same_friction(worn, tmp_path):
     """Each stands for five steps, its springs those of the step before; with older ones 5 % of the friction goes astray."""
-    run = scene("cutting_3d_wear", tmp_path / "run", sampling_period=5, report="false", **BONDED)
+    run = scene("cutting_3d_wear", tmp_path / "run", sampling_period=5, report="false", **BLOCK)
     assert run.code == 0, run.stderr
     friction, whole = (r.summary["balances"]["friction"]["tool"] for r in (run, worn))
     assert friction != whole and friction == pytest.approx(whole, rel=0.01)
-    books_close(run, 0.02)
+    assert_balances_close(run, 0.02)
 
 
 def test_no_wear_without_contact_and_none_above_the_cut(worn):
     places = np.load(worn.out / "model.npz")["tool_positions"]
     rubbed = last_snapshot(worn.out)["worn_depth"] > 0
-    assert 5 < rubbed.sum() and np.median(places[rubbed, 1]) < BONDED["depth_of_cut"]
+    assert 5 < rubbed.sum() and np.median(places[rubbed, 1]) < BLOCK["depth_of_cut"]
 
 
 def test_no_heat_engine_and_files_for_paraview(worn):
@@ -104,10 +89,19 @@ def test_no_heat_engine_and_files_for_paraview(worn):
     assert "in perspective" in page and "[Rojek 2003, 13.3]: 0.14 mm" in page
 
 
+REMOVED = dict(wear_coefficient=3e-8, report="false", **{**BLOCK, "cut_time": 0.05})
+
+
+@pytest.fixture(scope="module")
+def removed(tmp_path_factory):
+    """{rule: run}: particles go as they wear."""
+    folder = tmp_path_factory.mktemp("removed")
+    return {rule: scene("cutting_3d_removal", folder / rule, removal=rule, **REMOVED) for rule in ("volume", "depth")}
+
+
 @pytest.mark.parametrize("rule", ["volume", "depth"])
-def test_particles_go_as_they_wear(tmp_path, rule):
-    run = scene("cutting_3d_removal", tmp_path / "run", removal=rule, wear_coefficient=3e-8, report="false",
-                **{**BONDED, "cut_time": 0.05})
+def test_particles_go_as_they_wear(removed, rule):
+    run = removed[rule]
     assert run.code == 0, run.stderr
     assert value(run, "particles_removed") > 10
     mass = run.summary["balances"]["mass"]
@@ -117,21 +111,24 @@ def test_particles_go_as_they_wear(tmp_path, rule):
     shot, radii = last_snapshot(run.out), np.load(run.out / "model.npz")["tool_radii"]
     assert (shot["worn_depth"][shot["alive"]] < 2 * radii[shot["alive"]]).all()
     assert set(shot["surface"].tolist()) <= set(np.flatnonzero(shot["alive"]).tolist())
-    books_close(run, 0.03)
+    assert_balances_close(run, 0.03)
 
 
 def test_a_tooth_of_triangles_makes_a_like_cut(tmp_path, worn):
-    run = scene("cutting_3d_triangles", tmp_path / "run", report="false", **FACETED)
+    run = scene("cutting_3d_triangles", tmp_path / "run", report="false", **BLOCK_OF_TRIANGLES)
     assert run.code == 0, run.stderr
-    books_close(run, 0.03)
+    assert_balances_close(run, 0.03)
     assert value(run, "tensile_cracks") > 10 and value(run, "worn_volume") == 0
     assert 0.3 < value(run, "mean_cutting_force") / value(worn, "mean_cutting_force") < 3
+
+
+BLUNTED = dict(wear_coefficient=3e-9, reshape="true", **BLOCK_OF_TRIANGLES)
 
 
 @pytest.fixture(scope="module")
 def blunted(tmp_path_factory):
     """A tooth of triangles that wears."""
-    run = scene("cutting_3d_triangles", tmp_path_factory.mktemp("blunted") / "run", wear_coefficient=3e-9, reshape="true", **FACETED)
+    run = scene("cutting_3d_triangles", tmp_path_factory.mktemp("blunted") / "run", **BLUNTED)
     assert run.code == 0, run.stderr
     return run
 
@@ -146,13 +143,13 @@ def test_triangles_lose_archards_volume_and_do_not_fold(blunted):
     assert gone + mass["waiting"] == pytest.approx(mass["archard"], rel=1e-9) and gone > 0.9 * mass["archard"]
     assert value(blunted, "mass_lost") == pytest.approx(gone / mass["initial"], rel=1e-9) and value(blunted, "mass_lost") > 0.004
     check_boundary(now, facets)
-    books_close(blunted, 0.03)
+    assert_balances_close(blunted, 0.03)
 
 
 def test_one_mode_of_several_wears_and_is_judged_like_archards_law(blunted, tmp_path):
     """Its k stands in the modes; wear_coefficient is 0."""
     run = scene("cutting_3d_triangles", tmp_path / "run", wear_law="modes", wear_modes="3e-9/1/1", reshape="true", report="false",
-                **FACETED)
+                **BLOCK_OF_TRIANGLES)
     assert run.code == 0, run.stderr
     for name in ("worn_volume", "wear_distribution_error", "trusted_wear_acceleration"):
         assert value(run, name) == pytest.approx(value(blunted, name), rel=1e-6, abs=0)
@@ -160,9 +157,9 @@ def test_one_mode_of_several_wears_and_is_judged_like_archards_law(blunted, tmp_
 
 
 def test_contacts_that_pass_to_facets_given_elsewhere_bring_no_energy(tmp_path):
-    """M's soft contacts, worn so much that facets are given elsewhere under particles: not counted, they add 2 %."""
+    """The soft contacts of [Rojek 2003, 13.2], worn so much that facets are given elsewhere under particles: not counted, they add 2 %."""
     run = scene("cutting_3d_triangles", tmp_path / "run", wear_coefficient=1e-7, reshape="true", report="false",
-                **{**FACETED, "tool_kn": 1e6, "tool_kt": 1e6})
+                **{**BLOCK_OF_TRIANGLES, "tool_kn": 1e6, "tool_kt": 1e6})
     assert run.code == 0, run.stderr
     model, shot = np.load(run.out / "model.npz"), last_snapshot(run.out)
     assert (model["tool_facets"] != shot["tool_facets"]).any() and value(run, "mass_lost") > 0.05
@@ -199,8 +196,7 @@ def test_a_worn_tool_goes_out_and_into_the_next_cut(blunted, tmp_path):
     vertices, facets = read_stl(blunted.out / "tool.stl")
     elsewhere = tmp_path / "elsewhere.stl"
     write_stl(elsewhere, vertices + [0.3, 0.05, -0.2], facets)
-    own = {name: v for name, v in FACETED.items() if name not in ("breadth", "tooth_height", "tooth_width")}
-    run = scene("cutting_3d_triangles", tmp_path / "run", stl=elsewhere, report="false", **own)
+    run = scene("cutting_3d_triangles", tmp_path / "run", stl=elsewhere, report="false", **OF_A_FILE)
     assert run.code == 0, run.stderr
     worn, fed = (dict(np.load(r.out / "model.npz")) for r in (blunted, run))
     was = last_snapshot(blunted.out)
@@ -210,7 +206,7 @@ def test_a_worn_tool_goes_out_and_into_the_next_cut(blunted, tmp_path):
     tip = fed["tool_vertices"][fed["tool_vertices"][:, 1] < 1e-6, 0].max()
     assert (low[1], tip) == pytest.approx((0, -4e-3), abs=1e-6) and low[2] == pytest.approx(-high[2], rel=1e-6)
     assert value(run, "mean_cutting_force") > 1000 and not (run.out / "tool.stl").exists()
-    books_close(run, 0.03)
+    assert_balances_close(run, 0.03)
 
 
 def test_a_loose_fill_settles_to_its_weight_and_resists_the_tooth(tmp_path):
@@ -228,37 +224,42 @@ def test_a_loose_fill_settles_to_its_weight_and_resists_the_tooth(tmp_path):
 
 
 def test_the_box_carries_the_weight_of_the_fill(tmp_path):
-    run = run_script(ROOT / "tests/scenes/scripts/settled_fill.py", *arguments({**LOOSE, "settling": 0.6}))
-    assert run.code == 0, run.stderr
-    found = json.loads(next(line for line in run.stdout.splitlines() if line.startswith("JSON"))[4:])
+    found = checks_of("settled_fill", tmp_path, *arguments({**LOOSE, "settling": 0.6}))
     assert found["on_box"] == pytest.approx(found["weight"], rel=5e-3)
     assert found["kinetic"] < 1e-3 * found["fallen"]
 
 
-@pytest.mark.parametrize("name, own", [("cutting_3d_removal", dict(tool_radius=3e-3, wear_coefficient=1e-8)),
-                                       ("cutting_3d_triangles", dict(facet=0.02))])
-def test_an_interrupted_cut_goes_on_bit_for_bit(tmp_path, name, own):
-    values = {**{key: v for key, v in BONDED.items() if key != "tool_radius"}, "cut_time": 0.06, "report": "false",
-              "checkpoint_interval": 0.01, **own}
-    script = ROOT / f"yade_scripts/{name}.py"
-    whole = scene(name, tmp_path / "whole", **values)
-    assert whole.code == 0, whole.stderr
+def assert_resumes(whole, out, name, **values):
+    """Stopped on its way and resumed it ends as the run `whole`."""
     # A collider that has lost sight of the rock would resume just as well.
     assert value(whole, "mean_cutting_force") > 1000
-    assert interrupt_script(script, tmp_path / "cut", signal.SIGTERM, 2, **values).code == 128 + signal.SIGTERM
-    resumed = finish(start(script, [*arguments(values), "--out", str(tmp_path / "cut"), "--resume"]), tmp_path / "cut")
-    assert_as_if_never_stopped(resumed, whole, "cracks.csv")
+    values = {**values, "report": "false", "checkpoint_interval": 0.01}
+    assert interrupt_script(ROOT / f"yade_scripts/{name}.py", out, signal.SIGTERM, 2, **values).code == 128 + signal.SIGTERM
+    assert_as_if_never_stopped(scene(name, out, "--resume", **values), whole, "cracks.csv")
 
 
-@pytest.mark.parametrize("name, values, word", [
-    ("cutting_3d_wear", dict(cut_time=5), "cut_time"), ("cutting_3d_wear", dict(tool_radius=0.02), "tool_radius"),
-    ("cutting_3d_triangles", dict(sampling_period=2), "sampling_period = 2 steps: must be 1"),
-    ("cutting_3d_triangles", dict(facet=1e-6), "facet = 1e-06 m: must be at least 0.0"),
-    ("granular_3d", dict(start=0.1), "start"), ("granular_3d", dict(Rn=1), "Rn")])
-def test_what_cannot_be_is_refused(tmp_path, name, values, word):
-    usual = {"granular_3d": LOOSE, "cutting_3d_triangles": FACETED, "cutting_3d_wear": BONDED}[name]
-    run = scene(name, tmp_path / "run", **{**usual, **values})
-    assert run.code == 2 and run.stderr.splitlines()[-1].startswith(f"error: {word}") and not run.out.exists()
+def test_an_interrupted_cut_with_particles_goes_on_bit_for_bit(removed, tmp_path):
+    assert_resumes(removed["depth"], tmp_path / "cut", "cutting_3d_removal", removal="depth", **REMOVED)
+
+
+def test_an_interrupted_cut_with_triangles_goes_on_bit_for_bit(blunted, tmp_path):
+    assert_resumes(blunted, tmp_path / "cut", "cutting_3d_triangles", **BLUNTED)
+    assert np.array_equal(*(last_snapshot(out)["tool_vertices"] for out in (blunted.out, tmp_path / "cut")))
+
+
+@pytest.mark.parametrize("name, usual, cases", [
+    ("cutting_3d_wear", BLOCK, [(dict(cut_time=5), "cut_time = 5"), (dict(tool_radius=0.02), "tool_radius = 0.02")]),
+    ("cutting_3d_triangles", BLOCK_OF_TRIANGLES, [
+        (dict(sampling_period=2), "sampling_period = 2 steps: must be 1"),
+        (dict(facet=1e-6), "facet = 1e-06 m: must be at least 0.0")]),
+    ("granular_3d", LOOSE, [(dict(start=0.1), "start = 0.1"), (dict(Rn=1), "Rn = 1")])])
+def test_what_cannot_be_is_refused(tmp_path, name, usual, cases):
+    words = [arguments({**usual, **values, "out": tmp_path / "out"}) for values, _ in cases]
+    for (code, said), (_, expected) in zip(refusals(ROOT / f"yade_scripts/{name}.py", tmp_path, words), cases, strict=True):
+        assert_refused(code, said, f"error: {expected}")
+    run = scene(name, tmp_path / "out", **{**usual, **cases[0][0]})
+    assert_refused(run.code, run.stderr, f"error: {cases[0][1]}")
+    assert not (tmp_path / "out").exists()
 
 
 CUBE = (0.04 * (np.array(list(np.ndindex(2, 2, 2))) - 0.5),
@@ -267,7 +268,8 @@ CUBE = (0.04 * (np.array(list(np.ndindex(2, 2, 2))) - 0.5),
 """Vertices and facets of a closed surface, 40 mm wide."""
 
 
-@pytest.mark.parametrize("scale, facets, values, words", [
+OF_A_FILE = {name: v for name, v in BLOCK_OF_TRIANGLES.items() if name not in ("breadth", "tooth_height", "tooth_width")}
+FILES = [
     (None, None, {}, "must be a readable STL file"),
     (1, CUBE[1][:0], {}, "must be a file of triangles"),
     (1, CUBE[1][1:], {}, "3 open edges: must be closed: it has holes"),
@@ -276,13 +278,24 @@ CUBE = (0.04 * (np.array(list(np.ndindex(2, 2, 2))) - 0.5),
     (1, np.vstack([CUBE[1], 8 + CUBE[1]]), {}, "2 separate surfaces: must be one piece"),
     (1000, CUBE[1], {}, "40 x 40 x 40 m: must be shorter and narrower than the block, 0.28 x 0.1 x 0.16"),
     (0.5, CUBE[1], {}, "height of 0.02 m: must be higher than depth_of_cut = 0.026"),
-    (1, CUBE[1], dict(outline="my_tooth.csv"), "must be without outline = my_tooth.csv")])
-def test_an_stl_file_that_cannot_be_the_tool_is_refused_in_a_line(tmp_path, scale, facets, values, words):
-    file = tmp_path / "tool.stl"
-    if scale:
-        # A second, smaller cube in front of it, for those facets that take it.
-        write_stl(file, scale * np.vstack([CUBE[0], 0.2 * CUBE[0] + [0.06, 0, 0]]), facets)
-    run = scene("cutting_3d_triangles", tmp_path / "run", stl=file, **FACETED, **values)
-    said = [line for line in run.stderr.splitlines() if "error" in line.lower() or "Traceback" in line]
-    assert run.code == 2 and len(said) == 1 and said[0].startswith(f"error: stl = {file}") and words in said[0]
-    assert not run.out.exists()
+    (1, CUBE[1], dict(outline="my_tooth.csv"), "must be left out with outline = my_tooth.csv"),
+    (1, CUBE[1], dict(heat="true"), "must be left out with heat = true: heat is for a tool with an outline")]
+"""Scale and facets of an STL file, values beside it, what is said."""
+
+
+def test_an_stl_file_that_cannot_be_the_tool_is_refused_in_a_line(tmp_path):
+    cases = []
+    for number, (scale, facets, values, _) in enumerate(FILES):
+        file = tmp_path / f"tool{number}.stl"
+        cases.append(arguments({**OF_A_FILE, "stl": file, **values, "out": tmp_path / "out"}))
+        if scale:
+            # A second, smaller cube in front of it, for those facets that take it.
+            write_stl(file, scale * np.vstack([CUBE[0], 0.2 * CUBE[0] + [0.06, 0, 0]]), facets)
+    found = refusals(ROOT / "yade_scripts/cutting_3d_triangles.py", tmp_path, cases)
+    for number, ((code, said), (*_, words)) in enumerate(zip(found, FILES, strict=True)):
+        assert_refused(code, said, f"error: stl = {tmp_path}/tool{number}.stl")
+        assert_refused(code, said, words)
+    run = run_script(ROOT / "yade_scripts/cutting_3d_triangles.py", *cases[2])
+    assert_refused(run.code, run.stderr, FILES[2][3])
+    assert not (tmp_path / "out").exists()
+
