@@ -1,19 +1,16 @@
 """A tool on a curved path: it stays on it, its work is that of all forces and torques on it, and the balances close."""
 import pytest
 
-from tests.running import ROOT, SMALL, arguments, run_script
+from tests.running import ROOT, SMALL, arguments, run_script, value
 
-CURVED = {**SMALL, "start_up": 6e-4, "cycles": 2, "cycle_time": 6e-4, "wear_acceleration": 3e5, "clearance": 30}
+CURVED = {**SMALL, "start_up": 6e-4, "cycles": 2, "cycle_time": 6e-4, "wear_acceleration": 3e5, "clearance": 30,
+          "report": "false"}
 
 
 @pytest.fixture(scope="module")
 def curved(tmp_path_factory):
     out = tmp_path_factory.mktemp("curved") / "out"
     return run_script(ROOT / "tests/scenes/scripts/curved_cut.py", *arguments(CURVED), "--out", str(out), out=out)
-
-
-def value(run, name):
-    return run.summary["results"][name]["value"]
 
 
 def test_it_stays_on_its_path_while_particles_go_and_cycles_begin_anew(curved):

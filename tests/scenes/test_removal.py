@@ -34,7 +34,7 @@ def test_uncovered_particles_come_without_a_push(wear_acceleration, least):
     assert 0 < found["balances"]["energy"]["removed_contacts"] < 0.1 * found["balances"]["energy"]["tool_work"]
 
 
-def test_a_tooth_cut_in_two_goes_on_with_the_piece_that_is_held():
+def test_a_tooth_cut_in_two_goes_on_with_the_piece_that_is_fixed():
     found = removal(saw="true", wear_acceleration=100, start_up=1.2e-3)
     assert found["below"] == [0, 0, 0] and found["unlisted"] == []
     assert found["balances"]["mass"]["dropped_pieces"] > 0.005 * found["balances"]["mass"]["initial"]

@@ -217,7 +217,7 @@ def heated_disc():
     inner, outer = (math.sqrt(count * cell / math.pi) for count in (hot.sum(), rock.count))
     a = Assembly(rock, damping=0.4)
     a.heat(np.where(hot, kelvin, 0.0))
-    a.relax(6000)
+    a.relax(2000)
     force, branch = a.forces()
     share = -0.5 * np.einsum("ki,kj->kij", force, branch) / cell
     stress = np.zeros((rock.count, 2, 2))
