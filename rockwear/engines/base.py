@@ -78,20 +78,19 @@ def register(engines):
 def insert(engines):
     """Insert PyRunners of these engines into O.engines, whose last one is the integrator, by phase and period.
 
-    Within a phase engines keep their order; those of one period share a runner, at the place of the first of them.
+    Within a phase engines keep their order; those of one period share a runner, at the place of the first of them,
+    because a runner alone costs as much as several short visits.
     """
-    start, forces, motion = (runners({engine.name: engine.period for engine in engines
-                                      if engine.phase == phase and engine.period}) for phase in (START, FORCES, MOTION))
+    start, forces, motion = (_runners([engine for engine in engines if engine.phase == phase and engine.period])
+                             for phase in (START, FORCES, MOTION))
     O.engines = start + O.engines[:-1] + forces + O.engines[-1:] + motion
 
 
-def runners(periods):
-    """PyRunners that call engines at their periods: {name: steps}, in order. Engines of one period share a runner,
-    because a runner alone costs as much as several short visits."""
+def _runners(engines):
     groups = {}
-    for name, period in periods.items():
-        groups.setdefault(int(period), []).append(name)
-    return [PyRunner(command=f"import rockwear.engines.base; rockwear.engines.base.call({', '.join(map(repr, names))})",
+    for engine in engines:
+        groups.setdefault(int(engine.period), []).append(repr(engine.name))
+    return [PyRunner(command=f"import rockwear.engines.base; rockwear.engines.base.call({', '.join(names)})",
                      iterPeriod=period) for period, names in groups.items()]
 
 

@@ -59,9 +59,10 @@ def random_axes(rng):
     return axes
 
 
-def set_free():
+def set_free(bonds):
     """Drive the pair no longer."""
-    O.engines = [*O.engines[:3], *base.runners({"bonds": 1}), O.engines[-1]]
+    O.engines = [*O.engines[:3], O.engines[-1]]
+    base.insert([bonds])
 
 
 def programmes(law):
@@ -135,7 +136,7 @@ def work_until_gone(law):
 def flying_apart(law):
     """A free pair driven apart, turning and shearing: energy that is in no balance, over the energy released."""
     bonds = drive_pair(law, np.zeros(2), np.zeros(2)).bonds
-    set_free()
+    set_free(bonds)
     for body, (vel, spin) in zip(O.bodies, [((0.4, -0.2, 0.1), (30, -20, 80)), ((-0.3, 1.2, 0.2), (-40, 10, 60))]):
         body.state.blockedDOFs = ""
         body.state.mass, body.state.inertia = 5.0, (3e-6,) * 3
@@ -163,7 +164,7 @@ def resuming(law):
         response = drive_pair(law, 0.2 * un, 0.2 * ut)
         bonds = response.bonds
         state = bonds.state()
-        set_free()
+        set_free(bonds)
         O.bodies[1].state.vel, O.bodies[1].state.angVel = Vector3(0.02, 0.05, 0.0), Vector3(3.0, 5.0, -8.0)
         if resumed:
             O.save(path)
