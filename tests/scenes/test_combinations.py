@@ -1,4 +1,4 @@
-"""New combinations of parts: heat in space and with facets, a Padova rock in a cut, tension-only damage, H(theta) of facets.
+"""New combinations of parts: heat in space and with facets, a Padova rock in a cut, tension-only damage, H(theta).
 
 Each closes its balances, and shows what only this combination can show.
 """
@@ -14,8 +14,8 @@ from rockwear.model.particle_tool import LayeredTool, Tool
 from rockwear.model.thermal_body import FacetBody, ParticleBody
 from rockwear.report.folder import read_history
 from tests.running import (
-    BLOCK, BLOCK_OF_TRIANGLES, ROOT, SMALL, arguments, assert_as_if_never_stopped, assert_refused, interrupt_script, last_snapshot,
-    refusals, run_script, value)
+    BLOCK, BLOCK_OF_TRIANGLES, ROOT, SMALL, arguments, assert_as_if_never_stopped, assert_refused, interrupt_script,
+    last_snapshot, refusals, run_script, value)
 
 DENSITY = 7830.0
 LIGHT = 10.0
@@ -52,7 +52,7 @@ def assert_balances_close(done):
 
 
 def wear_per_hardness(done, mu):
-    """k A W / mu: the worn volume times the hardness (J) of one that stays the same, from the friction work that wears."""
+    """k A W / mu (J), worn volume times hardness where this is constant, from the friction work W that wears."""
     values = done.summary["parameters"]
     return K * values["wear_acceleration"] / mu * done.summary["balances"]["friction"]["worn_by"]
 
@@ -65,13 +65,14 @@ def integral(first, last):
 
 
 def assert_wear_follows_own_heat(done, body, volume, *, mu):
-    """Without conduction T = T0 + chi s W / C at each node, so that it loses V = k A C / (mu chi s) * integral of dT / H(T).
+    """Each node loses V = k A C / (mu chi s) times the integral of dT / H(T), for T = T0 + chi s W / C without conduction.
 
-    The temperature of a heat step counts for the wear until the next one. body: model.thermal_body.ThermalBody; volume: (n,)
-    m3 that wore at its nodes.
+    The temperature of a heat step counts for the wear until the next one. body: model.thermal_body.ThermalBody; volume:
+    (n,) m3 that wore at its nodes.
     """
     values, temperature = done.summary["parameters"], last_snapshot(done.out)["temperature"][-body.count:]
-    capacity = body.capacities(Material(density=DENSITY, specific_heat=values["tool_specific_heat"], conductivity=60.0), "voronoi")
+    capacity = body.capacities(Material(density=DENSITY, specific_heat=values["tool_specific_heat"], conductivity=60.0),
+                               "voronoi")
     heated = temperature > 650
     assert heated.sum() > 5 and temperature.max() > 700
     assert np.array_equal(heated, volume > 0)
@@ -111,8 +112,8 @@ def test_a_tool_of_particles_in_space_heats_up(in_space):
 def test_wear_in_space_follows_the_hardness_at_each_particles_own_temperature(in_space_hot):
     assert_balances_close(in_space_hot)
     model, shot = np.load(in_space_hot.out / "model.npz"), last_snapshot(in_space_hot.out)
-    tool = LayeredTool(vertices=model["outline"], radius=BLOCK["tool_radius"], breadth=BLOCK["breadth"], seed=1, removal="none",
-                       density=DENSITY)
+    tool = LayeredTool(vertices=model["outline"], radius=BLOCK["tool_radius"], breadth=BLOCK["breadth"], seed=1,
+                       removal="none", density=DENSITY)
     assert np.array_equal(tool.positions, model["tool_positions"])
     volume = shot["worn_depth"] * (2 * tool.radii)**2
     assert_wear_follows_own_heat(in_space_hot, ParticleBody(tool), volume, mu=0.1)
@@ -129,7 +130,8 @@ def test_heat_does_not_change_the_cut_in_space_but_a_hot_tool_wears_more(in_spac
 
 def test_heat_in_space_stopped_and_resumed_equals_never_stopped(in_space, tmp_path):
     values = {**IN_SPACE, "checkpoint_interval": 0.01}
-    assert interrupt_script(script("cutting_3d_wear"), tmp_path / "cut", signal.SIGTERM, 3, **values).code == 128 + signal.SIGTERM
+    stopped = interrupt_script(script("cutting_3d_wear"), tmp_path / "cut", signal.SIGTERM, 3, **values)
+    assert stopped.code == 128 + signal.SIGTERM
     assert_as_if_never_stopped(run("cutting_3d_wear", tmp_path / "cut", "--resume", **values), in_space, "cracks.csv")
     assert np.array_equal(*(last_snapshot(out)["temperature"] for out in (in_space.out, tmp_path / "cut")))
 
@@ -145,16 +147,16 @@ def of_segments(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def of_segments_hot(tmp_path_factory):
-    return run("tooth_cycles", tmp_path_factory.mktemp("hot") / "run", **{**OF_SEGMENTS, "wear_period": 10}, **HOT, reshape="false",
-               conduction="false", tool_specific_heat=3 * LIGHT, heat_sharing="equal", heat_period=2e-6)
+    return run("tooth_cycles", tmp_path_factory.mktemp("hot") / "run", **{**OF_SEGMENTS, "wear_period": 10}, **HOT,
+               reshape="false", conduction="false", tool_specific_heat=3 * LIGHT, heat_sharing="equal", heat_period=2e-6)
 
 
 def facet_body(done):
     """The thermal body of the tool of segments of a run, when new."""
     outline = np.load(done.out / "model.npz")["outline"]
     tool = FacetTool.of_outline(outline, segment=1e-3, density=DENSITY)
-    return tool, FacetBody(tool, fill=Tool(vertices=outline, radius_min=0.435e-3, radius_max=0.565e-3, seed=1, removal="none",
-                                           density=DENSITY))
+    return tool, FacetBody(tool, fill=Tool(vertices=outline, radius_min=0.435e-3, radius_max=0.565e-3, seed=1,
+                                           removal="none", density=DENSITY))
 
 
 def test_a_tool_of_segments_heats_up_and_wears(of_segments):
@@ -182,7 +184,8 @@ def test_a_hot_tool_of_segments_wears_more_per_work(of_segments, of_segments_hot
 
 def test_heat_of_segments_stopped_and_resumed_equals_never_stopped(of_segments, tmp_path):
     values = {**OF_SEGMENTS, "checkpoint_interval": 0.01}
-    assert interrupt_script(script("tooth_cycles"), tmp_path / "cut", signal.SIGTERM, 4, **values).code == 128 + signal.SIGTERM
+    stopped = interrupt_script(script("tooth_cycles"), tmp_path / "cut", signal.SIGTERM, 4, **values)
+    assert stopped.code == 128 + signal.SIGTERM
     resumed = run("tooth_cycles", tmp_path / "cut", "--resume", **values)
     assert_as_if_never_stopped(resumed, of_segments, "cracks.csv", "wear_profile.csv")
     for name in ("temperature", "tool_vertices"):
@@ -211,8 +214,8 @@ def cracks(done):
     return {name: np.array(column) for name, column in read_history(done.out / "cracks.csv")[0].items()}
 
 
-CRUSHED = dict(width=0.03, height=0.02, tooth_height=0.018, tooth_width=0.012, depth_of_cut=0.006, tool_kn=20e9, tool_kt=20e9,
-               start_up=4e-4, cycles=0, heat="false", report="false")
+CRUSHED = dict(width=0.03, height=0.02, tooth_height=0.018, tooth_width=0.012, depth_of_cut=0.006, tool_kn=20e9,
+               tool_kt=20e9, start_up=4e-4, cycles=0, heat="false", report="false")
 
 
 def test_a_padova_rock_is_cut(tmp_path):
@@ -229,7 +232,7 @@ def test_a_padova_rock_is_cut(tmp_path):
 
 
 def test_under_tension_only_shear_alone_breaks_no_bond(tmp_path):
-    """With bonds that are weak in shear. One that only opening damages dissipates Rn^2 / 2 (1 / kn + 1 / H) at least."""
+    """Bonds are weak in shear. One that only opening damages dissipates at least Rn^2 / 2 (1 / kn + 1 / H)."""
     weak = {**SMALL, **CRUSHED, "bond_law": "damage", "H": 2e10, "Rt": 2e4}
     either, opening = (run("tooth_cycles", tmp_path / word, **weak, tension_only=word) for word in ("false", "true"))
     least = 0.5 * 1e5**2 * (1 / 20e9 + 1 / 2e10)
@@ -244,7 +247,8 @@ def test_under_tension_only_shear_alone_breaks_no_bond(tmp_path):
 
 def test_segments_without_heat_wear_by_the_hardness_at_their_temperature(tmp_path):
     values = {**OF_SEGMENTS, "start_up": 4e-4, "cycles": 0, "heat": "false", "reshape": "false"}
-    cold, hot = (run("tooth_cycles", tmp_path / str(kelvin), **values, tool_temperature=kelvin) for kelvin in (300, 800))
+    cold, hot = (run("tooth_cycles", tmp_path / str(kelvin), **values, tool_temperature=kelvin)
+                 for kelvin in (300, 800))
     assert_balances_close(hot)
     friction = [done.summary["balances"]["friction"]["worn_by"] for done in (cold, hot)]
     assert friction[0] == friction[1] > 1
@@ -262,18 +266,22 @@ def test_combinations_that_make_no_sense_are_refused_in_a_line(tmp_path):
 
 @pytest.mark.parametrize("name, usual, cases", [
     ("tooth_cycles", SMALL, [
-        (dict(tool="segments", heat="false", thermal_radius=1e-3), "thermal_radius = 0.001 m: must be left out with heat = false"),
-        (dict(tool="segments", tool_radius_min=1e-3), "tool_radius_min = 0.001 m: must be left out with tool = segments"),
+        (dict(tool="segments", heat="false", thermal_radius=1e-3),
+         "thermal_radius = 0.001 m: must be left out with heat = false"),
+        (dict(tool="segments", tool_radius_min=1e-3),
+         "tool_radius_min = 0.001 m: must be left out with tool = segments"),
         (dict(segment=1e-3), "segment = 0.001 m: must be left out with tool = particles"),
         (dict(bond_law="padova", kt=2e10), "kt = 2e+10 N/m: must be left out with bond_law = padova"),
         (dict(tension_only="true"), "tension_only = true: must be left out with bond_law = brittle"),
         (dict(heat="false", conduction="false"), "conduction = false: must be left out with heat = false")]),
     ("cutting_3d_wear", BLOCK, [
-        (dict(heat="true", hardness=0, bond_conductance="bar"), "bond_conductance = bar: must be voronoi for a tool in space"),
+        (dict(heat="true", hardness=0, bond_conductance="bar"),
+         "bond_conductance = bar: must be voronoi for a tool in space"),
         (dict(rock_conductivity=1), "rock_conductivity = 1 W/mK: must be left out with heat = false")]),
     ("granular_3d", {}, [(dict(heat="true"), "heat = true: must be a parameter of this scene")])])
 def test_these_too(tmp_path, name, usual, cases):
-    found = refusals(script(name), tmp_path, [arguments({**usual, **values, "out": tmp_path / "out"}) for values, _ in cases])
-    for (code, said), (_, words) in zip(found, cases, strict=True):
-        assert_refused(code, said, words)
+    words = [arguments({**usual, **values, "out": tmp_path / "out"}) for values, _ in cases]
+    found = refusals(script(name), tmp_path, words)
+    for (code, said), (_, expected) in zip(found, cases, strict=True):
+        assert_refused(code, said, expected)
     assert not (tmp_path / "out").exists()

@@ -6,7 +6,8 @@ import time
 import numpy as np
 import pytest
 
-from tests.running import ROOT, arguments, assert_as_if_never_stopped, assert_refused, finish, history, refusals, run_script, start, value
+from tests.running import (
+    ROOT, arguments, assert_as_if_never_stopped, assert_refused, finish, history, refusals, run_script, start, value)
 
 SCRIPT = ROOT / "yade_scripts/dredge_pick.py"
 TINY = dict(cut_time=0.016, cycles=2, tool_radius_min=2e-3, tool_radius_max=2e-3, record_period=5e-4,
@@ -107,8 +108,8 @@ def test_killed_in_the_water_and_resumed_equals_never_stopped(turns, tmp_path):
 def checkpoint_stage(out):
     """Stage of the present checkpoint, once some of it has passed; -1 without one."""
     try:
-        folder = out / "checkpoint" / str(json.loads((out / "checkpoint/current.json").read_text(encoding="utf-8"))["set"])
-        with np.load(folder / "state.npz") as state:
+        current = json.loads((out / "checkpoint/current.json").read_text(encoding="utf-8"))["set"]
+        with np.load(out / "checkpoint" / str(current) / "state.npz") as state:
             return int(state["scene/stage"]) if state["scene/programme/cooled"] > 0 else -1
     except (OSError, ValueError, KeyError):
         return -1

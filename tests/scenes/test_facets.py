@@ -1,4 +1,4 @@
-"""A tool of facets in YADE: one contact at a time, exact friction and wear, the new shape felt, and runs that resume."""
+"""A tool of facets in YADE: one contact at a time, exact friction and wear, the new shape felt, resumed runs."""
 import math
 import signal
 
@@ -55,11 +55,13 @@ def test_a_shallow_inner_edge_is_one_face(pressed):
     assert found["facets"] == 5 and found["ripple"] < 0.1
     # 1 mm uphill and 5 mm downhill; the angle of friction is that between the force and the normal of the face.
     friction, slope = math.atan(0.3), math.radians(2.5)
-    assert found["work"] == pytest.approx(2e4 * (1e-3 * math.tan(friction - slope) + 5e-3 * math.tan(friction + slope)), rel=2e-3)
+    assert found["work"] == pytest.approx(2e4 * (1e-3 * math.tan(friction - slope) + 5e-3 * math.tan(friction + slope)),
+                                          rel=2e-3)
 
 
 def test_a_soft_contact_is_not_thrown_out_of_a_notch(tmp_path):
-    """With the force of the deeper face alone some crossings of the edge throw it out with many times what its spring holds."""
+    """With the force of the deeper face alone some crossings of the edge throw it out with many times what its
+    spring holds."""
     found = checks_of("notch", tmp_path)
     assert found["crossings"] > 500 and found["samples"] >= 1000
     assert found["gained"] < 0.2 * found["in_the_spring"] and found["aside"] < 0.3e-3
@@ -92,7 +94,8 @@ def test_the_segments_cut_and_wear_and_balances_close(worn):
     assert (worn.out / "report.html").stat().st_size > 0
     # At 30,000 times the face recedes faster than rock slides on it, and the run says so.
     assert value(worn, "recession_per_slip") > 1
-    assert any("Use wear_acceleration = " in line and "at most instead of 30000" in line for line in worn.summary["warnings"])
+    assert any("Use wear_acceleration = " in line and "at most instead of 30000" in line
+               for line in worn.summary["warnings"])
 
 
 def test_the_depth_of_wear_is_the_way_from_the_new_outline_to_the_worn_one(worn):
@@ -111,8 +114,10 @@ def test_the_history_shows_working_hours(worn):
     assert upper.get_xlabel() == "working time × acceleration / h"
     # The receding front gets the time to come to the rock, and that is no work.
     assert upper.get_xlim() == pytest.approx((0.0, run.column("working_time")[-1] * 3e4 / 3600), rel=1e-6)
-    left = [shot for shot in map(dict, map(np.load, sorted((worn.out / "snapshots").glob("*.npz")))) if shot["stage"] == 0][-1]
-    new, gone = (vertices[vertices[:, 1] < SMALL["depth_of_cut"], 0].max() for vertices in (run.model["tool_vertices"], left["tool_vertices"]))
+    left = [shot for shot in map(dict, map(np.load, sorted((worn.out / "snapshots").glob("*.npz"))))
+            if shot["stage"] == 0][-1]
+    new, gone = (vertices[vertices[:, 1] < SMALL["depth_of_cut"], 0].max()
+                 for vertices in (run.model["tool_vertices"], left["tool_vertices"]))
     way = (new - gone) / 4.0
     step = value(worn, "time_step")
     assert value(worn, "working_time") == pytest.approx(1e-3, abs=4 * step)
@@ -120,7 +125,8 @@ def test_the_history_shows_working_hours(worn):
 
 
 def test_segments_are_judged_by_the_rules_of_acceleration(worn):
-    """The rules of [Rocky], from the record along the outline; a layer as deep as its facet is gone within one contact here."""
+    """The rules of [Rocky], from the record along the outline; a layer as deep as its facet is gone within one
+    contact here."""
     with open(worn.out / "wear_profile.csv", encoding="utf-8") as file:
         assert "place_0 [m3/m]" in file.readline()
     columns, _ = read_history(worn.out / "wear_profile.csv")
@@ -129,7 +135,8 @@ def test_segments_are_judged_by_the_rules_of_acceleration(worn):
     model = np.load(worn.out / "model.npz")
     middle = model["tool_vertices"][model["tool_facets"]].mean(axis=1)
     worn_volume = last_snapshot(worn.out)["worn_volume"]
-    assert by_place == pytest.approx(np.bincount(places(model["outline"], middle), worn_volume, len(by_place)), rel=1e-9, abs=1e-9 * by_place.sum())
+    assert by_place == pytest.approx(np.bincount(places(model["outline"], middle), worn_volume, len(by_place)),
+                                     rel=1e-9, abs=1e-9 * by_place.sum())
     assert 0 < value(worn, "trusted_wear_acceleration") < 0.1 * 3e4
     assert any("a layer as deep as its facet goes in" in line for line in worn.summary["warnings"])
     assert (worn.out / "figures/trust.png").exists()
@@ -142,11 +149,13 @@ def test_a_half_of_the_work_wears_half(worn, tmp_path):
     assert value(run, "worn_volume") == pytest.approx(0.5 * whole * friction, rel=1e-12, abs=0)
     assert value(run, "mass_lost") == 0
     balance = run.summary["balances"]["mass"]
-    assert balance["archard"] == balance["shape_kept"] == pytest.approx(7830 * value(run, "worn_volume"), rel=1e-12, abs=0)
+    worn_mass = pytest.approx(7830 * value(run, "worn_volume"), rel=1e-12, abs=0)
+    assert balance["archard"] == balance["shape_kept"] == worn_mass
     assert balance["removed"] == balance["unexplained"] == 0
     model, shot = np.load(run.out / "model.npz"), last_snapshot(run.out)
     length = np.linalg.norm(np.diff(model["tool_vertices"][model["tool_facets"]], axis=1)[:, 0], axis=1)
-    assert value(run, "maximum_wear_depth") == pytest.approx((shot["worn_volume"] / length).max(), rel=1e-12, abs=0) and length.max() <= 1e-3
+    deepest = (shot["worn_volume"] / length).max()
+    assert value(run, "maximum_wear_depth") == pytest.approx(deepest, rel=1e-12, abs=0) and length.max() <= 1e-3
 
 
 def test_stopped_and_resumed_equals_never_stopped(worn, tmp_path):
@@ -170,11 +179,13 @@ def test_a_particle_inside_the_tool_is_found(pressed, kind):
 
 def test_wear_too_fast_for_the_shape_ends_with_what_to_change(tmp_path):
     # The first that is too fast: it has worn before.
-    runs = ((value, cut(tmp_path / f"{value:g}", wear_acceleration=value, cycles=0)) for value in (3e4, 1e5, 3e5, 1e6, 3e6))
+    runs = ((value, cut(tmp_path / f"{value:g}", wear_acceleration=value, cycles=0))
+            for value in (3e4, 1e5, 3e5, 1e6, 3e6))
     wear_acceleration, run = next((value, run) for value, run in runs if run.code)
     assert run.code == 1
     said = next(line for line in run.stderr.splitlines() if line.startswith("error:"))
-    assert "would recede by" in said and f"lower wear_acceleration = {wear_acceleration:g}" in said and "Traceback" not in run.stderr
+    assert "would recede by" in said and f"lower wear_acceleration = {wear_acceleration:g}" in said
+    assert "Traceback" not in run.stderr
     assert "worn" not in run.summary["ended"].replace("its wear", "")
     assert abs(run.summary["balances"]["mass"]["unexplained"]) < 1e-12 * run.summary["balances"]["mass"]["initial"]
 
@@ -188,7 +199,8 @@ REFUSED = [
 
 
 def test_bad_values_are_refused(tmp_path):
-    found = refusals(SEGMENTS, tmp_path, [arguments({**SHORT, **values, "out": tmp_path / "out"}) for values, _ in REFUSED])
+    cases = [arguments({**SHORT, **values, "out": tmp_path / "out"}) for values, _ in REFUSED]
+    found = refusals(SEGMENTS, tmp_path, cases)
     for (code, said), (_, words) in zip(found, REFUSED, strict=True):
         assert_refused(code, said, words)
     assert not (tmp_path / "out").exists()

@@ -1,11 +1,12 @@
-"""The heat benchmarks of [Rojek 2003, 7.6] in YADE: errors and orders, models of the sources beside ours, resuming, bad input."""
+"""The heat benchmarks of [Rojek 2003, 7.6] in YADE: errors and orders, the sources' models, resuming, bad input."""
 import signal
 
 import numpy as np
 import pytest
 
 from rockwear.kernels.conduction import PATHS
-from tests.running import ROOT, arguments, assert_as_if_never_stopped, assert_refused, interrupt_script, refusals, run_script, value
+from tests.running import (
+    ROOT, arguments, assert_as_if_never_stopped, assert_refused, interrupt_script, refusals, run_script, value)
 
 SCRIPT = ROOT / "yade_scripts/heat_benchmarks.py"
 SMALL = dict(across=32, refinements=2, report="false")

@@ -20,7 +20,8 @@ def worn(tmp_path_factory):
 
 
 def test_it_returns_its_k_within_a_tenth_of_a_per_cent(worn):
-    """w H / (p s) of the first row of [Rojek 2003, table 6.2]: what was put in comes out, from the known force alone."""
+    """w H / (p s) of the first row of [Rojek 2003, table 6.2]: what was put in comes out, from the known force
+    alone."""
     assert worn.code == 0, worn.stderr
     hardness = (500 - 9 * 156 / 200) * 9.80665e6
     k = value(worn, "worn_depth") * hardness / (885 / 26e-6 * 100)
@@ -48,7 +49,8 @@ def test_the_block_follows_its_wear_down(worn):
 
 @pytest.mark.parametrize("values", [
     dict(temperature_rise=430),
-    dict(temperature_rise=700, hardness_table="MET91", wear_coefficient=0.0113, force=622, area=68e-6, temperature=401.15)])
+    dict(temperature_rise=700, hardness_table="MET91", wear_coefficient=0.0113, force=622, area=68e-6,
+         temperature=401.15)])
 def test_a_temperature_that_rises_gives_the_integral(tmp_path, values):
     run = lab(tmp_path / "out", report="false", wear_acceleration=3000, **values)
     assert run.code == 0, run.stderr

@@ -42,8 +42,8 @@ class Force(base.Engine):
 
 
 class Pressed:
-    """Particles under a dead load on the underside of a tool that moves. kind: single, one facet; chain, short facets; valley;
-    triangles. watched: False leaves the contacts to YADE."""
+    """Particles under a dead load on the underside of a tool that moves. kind: single, one facet; chain, short
+    facets; valley; triangles. watched: False leaves the contacts to YADE."""
 
     def __init__(self, kind, watched=True):
         O.reset()
@@ -71,7 +71,8 @@ class Pressed:
         yade_scene.put_rock_materials(mu=ROCK.mu, loose=FrictViscoMat)
         yade_scene.put_tool_material(mu=MU, contact_damping=0.9)
         for x, z in self.places:
-            body = utils.sphere((x, surface - self.radius, z), self.radius, material="loose rock", mask=yade_scene.ROCK_MASK)
+            body = utils.sphere((x, surface - self.radius, z), self.radius, material="loose rock",
+                                mask=yade_scene.ROCK_MASK)
             body.state.mass, body.state.inertia = self.mass, (self.mass * self.radius**2,) * 3
             body.state.blockedDOFs = "xzXYZ"
             O.forces.setPermF(O.bodies.append(body), (0, self.force, 0))
@@ -84,7 +85,8 @@ class Pressed:
         increment = VelocityIncrement(masses=self.mass * ones, inertias=ones, radii=self.radius * ones, fixed=ones < 0)
         self.contact = FacetContact(tool=self.bodies, motion=increment, neighbours=tool.boundary.neighbours())
         self.wear = FacetWear(contact=self.contact, boundary=tool.boundary, tool=self.bodies,
-                              law=DissipationArchard(k=K if self.in_space else 0.0, mu=MU), hardness=Hardness.constant(HARDNESS),
+                              law=DissipationArchard(k=K if self.in_space else 0.0, mu=MU),
+                              hardness=Hardness.constant(HARDNESS),
                               temperature=lambda: np.full(tool.count, 293.0), period=50)
         self.noted = Force()
         O.dt = 1e-6 if self.in_space else 1e-7
@@ -112,7 +114,8 @@ class Pressed:
             yade=contact.functor.plasticDissipation() - before, own=contact.in_yade_balance,
             whole=contact.functor.plasticDissipation(), ripple=float(np.abs(force - force[0]).max() / self.force),
             archard=boundary.archard_volume, by_work=K / MU * self.wear.work_used / HARDNESS, removed=boundary.removed,
-            waiting=float(boundary.pending.sum()), facets=self.tool.count, shape=boundary.first_volume - boundary.volume)
+            waiting=float(boundary.pending.sum()), facets=self.tool.count,
+            shape=boundary.first_volume - boundary.volume)
 
     def stand(self):
         """Where particles come to rest on the worn tool, which stands still."""
@@ -126,7 +129,8 @@ class Pressed:
         return dict(
             overlaps=[self.radius - min(float(np.linalg.norm(nearest_on_triangle(place, moved[facet]) - place))
                                         for facet in boundary.facets) for place in places],
-            seen=[max(i.geom.penetrationDepth for i in O.interactions.withBody(number)) for number in range(self.count)],
+            seen=[max(i.geom.penetrationDepth for i in O.interactions.withBody(number))
+                  for number in range(self.count)],
             at_rest=max(abs(O.forces.f(number)[1]) for number in range(self.count)) / self.force,
             heights=[float(place[1] + self.radius) for place in places])
 

@@ -35,7 +35,8 @@ class Swing(base.Engine):
 
     def act(self):
         state = O.bodies[0].state
-        self.rows.append((state.pos[0], 0.5 * MASS * state.vel.squaredNorm() - LOAD * state.pos[1] + self.contact.elastic_energy()))
+        self.rows.append((state.pos[0],
+                          0.5 * MASS * state.vel.squaredNorm() - LOAD * state.pos[1] + self.contact.elastic_energy()))
 
 
 rise = 0.02 * math.tan(SLOPE)
@@ -52,7 +53,8 @@ body.state.mass, body.state.inertia = MASS, (MASS * RADIUS**2,) * 3
 body.state.blockedDOFs = "zXYZ"
 O.bodies.append(body)
 O.forces.setPermF(0, (0, LOAD, 0))
-yade_scene.put_loop_with_facets(rock=SimpleNamespace(kn=20e9, kt=20e9, mu=0.8), tool=SimpleNamespace(kn=KN, kt=KN, mu=MU))
+yade_scene.put_loop_with_facets(rock=SimpleNamespace(kn=20e9, kt=20e9, mu=0.8),
+                                tool=SimpleNamespace(kn=KN, kt=KN, mu=MU))
 bodies = FacetBodies(tool, Straight(start=(0.0, 0.0), velocity=(0.0, 0.0)))
 contact = FacetContact(tool=bodies, neighbours=tool.boundary.neighbours(),
                        motion=VelocityIncrement(masses=np.array([MASS]), inertias=np.ones(1), radii=np.array([RADIUS]),

@@ -27,7 +27,8 @@ def leave(code):
 def start(script, words):
     """-> (exit code, what it said)."""
     said = io.StringIO()
-    with mock.patch.object(sys, "argv", [script, *words]), contextlib.redirect_stderr(said), contextlib.redirect_stdout(said):
+    with (mock.patch.object(sys, "argv", [script, *words]),
+          contextlib.redirect_stderr(said), contextlib.redirect_stdout(said)):
         try:
             runpy.run_path(script)
         except Left as left:

@@ -66,7 +66,8 @@ def set_free(bonds):
 
 
 def programmes(law):
-    return {kind: deviation(law, drive_pair(law, un, ut)) for kind, (un, ut) in programme(law, END_N, END_T, 203).items()}
+    return {kind: deviation(law, drive_pair(law, un, ut))
+            for kind, (un, ut) in programme(law, END_N, END_T, 203).items()}
 
 
 def random_paths(law, plane, seeds=range(8)):
@@ -78,7 +79,8 @@ def random_paths(law, plane, seeds=range(8)):
         if plane:
             ut[:, 1] = 0.0
         axes = None if plane else random_axes(rng)
-        worst = max(worst, deviation(law, drive_pair(law, un, ut, radii=(1e-3, 1.7e-3), axes=axes, swapped=bool(seed % 2))))
+        response = drive_pair(law, un, ut, radii=(1e-3, 1.7e-3), axes=axes, swapped=bool(seed % 2))
+        worst = max(worst, deviation(law, response))
     return worst
 
 
@@ -118,7 +120,8 @@ def coulomb_afterwards(law):
         before, limit = response.ut[k], law.mu * abs(Fn[k])
         Ft = Ft * min(1.0, limit / (np.linalg.norm(Ft) or 1.0))
         worst = max(worst, abs(response.Fn[k] - Fn[k]), abs(response.Ft[k] - Ft).max())
-    return {"deviation": float(worst / law.Rn), "softening_bonds": len(response.bonds.softening_bonds), "slides": int(np.sum(Fn < 0))}
+    return {"deviation": float(worst / law.Rn), "softening_bonds": len(response.bonds.softening_bonds),
+            "slides": int(np.sum(Fn < 0))}
 
 
 def work_until_gone(law):
