@@ -239,22 +239,24 @@ def test_the_box_carries_the_weight_of_the_fill(tmp_path):
     assert found["kinetic"] < 1e-3 * found["fallen"]
 
 
-def assert_resumes(whole, out, name, **values):
-    """Stopped on its way and resumed it ends as the run `whole`."""
+def assert_resumes(whole, out, name, number, after, **values):
+    """Stopped by a signal after so many checkpoints and resumed it ends as the run `whole`."""
     # A collider that has lost sight of the rock would resume just as well.
     assert value(whole, "mean_cutting_force") > 1000
     values = {**values, "report": "false", "checkpoint_interval": 0.01}
-    stopped = interrupt_script(ROOT / f"yade_scripts/{name}.py", out, signal.SIGTERM, 2, **values)
-    assert stopped.code == 128 + signal.SIGTERM
+    stopped = interrupt_script(ROOT / f"yade_scripts/{name}.py", out, number, after, **values)
+    assert stopped.code in (-signal.SIGKILL, 128 + signal.SIGTERM)
     assert_as_if_never_stopped(scene(name, out, "--resume", **values), whole, "cracks.csv")
 
 
 def test_an_interrupted_cut_with_particles_goes_on_bit_for_bit(removed, tmp_path):
-    assert_resumes(removed["depth"], tmp_path / "cut", "cutting_3d_removal", removal="depth", **REMOVED)
+    # The steps of the cut are one chunk: the checkpoint is that of the end of the lowering.
+    assert_resumes(removed["depth"], tmp_path / "cut", "cutting_3d_removal", signal.SIGKILL, 2, removal="depth",
+                   **REMOVED)
 
 
 def test_an_interrupted_cut_with_triangles_goes_on_bit_for_bit(blunted, tmp_path):
-    assert_resumes(blunted, tmp_path / "cut", "cutting_3d_triangles", **BLUNTED)
+    assert_resumes(blunted, tmp_path / "cut", "cutting_3d_triangles", signal.SIGTERM, 4, **BLUNTED)
     assert np.array_equal(*(last_snapshot(out)["tool_vertices"] for out in (blunted.out, tmp_path / "cut")))
 
 
