@@ -143,7 +143,7 @@ def test_heat_in_space_stopped_and_resumed_equals_never_stopped(in_space, tmp_pa
 @pytest.fixture(scope="module")
 def of_segments(tmp_path_factory):
     """Heat is on by default; the surface recedes over thermal nodes."""
-    return run("tooth_cycles", tmp_path_factory.mktemp("segments") / "run", **OF_SEGMENTS)
+    return run("tooth_cycles", tmp_path_factory.mktemp("segments") / "run", "--vtk", **OF_SEGMENTS)
 
 
 @pytest.fixture(scope="module")
@@ -177,6 +177,15 @@ def test_rubbed_segments_are_the_hot_ones_and_wear_by_their_own_temperature(of_s
     assert np.array_equal(tool.first, shot["tool_vertices"])
     volume = np.bincount(body.node_of, shot["worn_volume"], body.count)
     assert_wear_follows_own_heat(of_segments_hot, body, volume, mu=0.3)
+
+
+def test_vtk_shows_temperatures_of_facets_at_their_vertices(of_segments):
+    lines = sorted((of_segments.out / "vtk").glob("tool.*.vtk"))[-1].read_text(encoding="utf-8").splitlines()
+    count, first = int(lines[4].split()[1]), lines.index("SCALARS temperature double 1") + 2
+    shown = np.array(lines[first:first + count], float)
+    nodes = last_snapshot(of_segments.out)["temperature"]
+    assert count == len(last_snapshot(of_segments.out)["tool_vertices"]) and len(lines) == first + count
+    assert shown.min() == pytest.approx(293.15, abs=0.01) and 293.2 < shown.max() <= nodes.max() + 1e-6
 
 
 def test_a_hot_tool_of_segments_wears_more_per_work(of_segments, of_segments_hot):
