@@ -290,7 +290,7 @@ def test_combinations_that_make_no_sense_are_refused_in_a_line(tmp_path):
          "bond_conductance = bar: must be voronoi for a tool in space"),
         (dict(rock_conductivity=1), "rock_conductivity = 1 W/mK: must be left out with heat = false")]),
     ("granular_3d", {}, [(dict(heat="true"), "heat = true: must be a parameter of this scene")])])
-def test_these_too(tmp_path, name, usual, cases):
+def test_parameters_of_parts_that_are_not_there_are_refused(tmp_path, name, usual, cases):
     words = [arguments({**usual, **values, "out": tmp_path / "out"}) for values, _ in cases]
     found = refusals(script(name), tmp_path, words)
     for (code, said), (_, expected) in zip(found, cases, strict=True):

@@ -108,7 +108,7 @@ def turning(law, steps=1000):
 
 
 def coulomb_afterwards(law):
-    """A broken bond under YADE alone: nothing is carried, and the force is that of a Coulomb contact."""
+    """A broken bond under YADE alone: Python holds no bond, and the force is that of a Coulomb contact."""
     rng = np.random.default_rng(3)
     un, ut = random_path(rng)
     un, ut = np.concatenate([[0.0, 2 * END_N], un - 2e-6]), np.vstack([np.zeros((2, 2)), ut])
