@@ -87,9 +87,7 @@ def drive_pair(law, un, ut, *, radii=(1.25e-3, 1.25e-3), axes=None, spin=(0.0, 0
     base.register([bonds, driver])
     base.insert([bonds, driver])
     bonds.connect()
-    O.run(len(un) + 1, True)  # a runner sits out its first step
-    if base.failures:
-        raise base.failures.pop()
+    base.run(len(un) + 1)  # a runner sits out its first step
     rows = np.array(driver.rows[:len(un)])
     return Response(un=rows[:, 0], ut=rows[:, 1:3], Fn=rows[:, 3], Ft=rows[:, 4:6], bonds=bonds)
 

@@ -105,9 +105,7 @@ class Assembly:
         return [(a, O.interactions[a, b]) for a, b in self.rock.pairs.tolist()]
 
     def relax(self, steps):
-        O.run(steps, True)
-        if base.failures:
-            raise base.failures.pop()
+        base.run(steps)
 
 
 def packed(**size):
@@ -267,9 +265,9 @@ def two_spinning(period, duration=0.02):
                 surface_period=1.0, conduction=False, period=steps)
     expansion = Expansion(coefficient=alpha, rock=rock, reference=300.0, temperature=lambda: network.temperature,
                           bonds=bonds, loose=lambda: friction.contacts, period=steps)
-    O.run(10, True)
+    base.run(10)
     insert(bonds, friction, heat, expansion)
-    O.run(round(duration / O.dt), True)
+    base.run(round(duration / O.dt))
     heat.act(), expansion.act()
     if base.failures:
         raise base.failures.pop()
@@ -324,7 +322,7 @@ def sliding_block():
     slip, turns = 0.0, []
     for sign in (1, -1, 1):
         O.bodies[0].state.angVel = (0, 0, sign * angular_velocity)
-        O.run(steps, True)
+        base.run(steps)
         # Each turn first slackens the springs and draws them taut the other way: no heat in those.
         load = max(i.phys.normalForce.norm() for i in O.interactions if i.isReal)
         slip += ((steps * O.dt * angular_velocity * stone - (1 if not turns else 2) * 0.3 * load / kt)
@@ -371,9 +369,7 @@ def collisions():
                 return 0.5 * (rock.masses[0] * state.vel.squaredNorm() + rock.inertias[0] * state.angVel.squaredNorm())
 
             before = kinetic()
-            O.run(int(60 / fraction), True)
-            if base.failures:
-                raise base.failures.pop()
+            base.run(int(60 / fraction))
             law = law_functor(Law2_ScGeom_FrictViscoPhys_CundallStrackVisco)
             found.append({"angle": angle, "fraction": fraction, "lost": before - kinetic(),
                           "friction": contact.friction, "dashpot": contact.dashpot_dissipated,

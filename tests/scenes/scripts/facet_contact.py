@@ -96,9 +96,7 @@ class Pressed:
         self.contact.connect()
 
     def run(self, steps):
-        O.run(steps, True)
-        if base.failures:
-            raise base.failures[0]
+        base.run(steps)
 
     def slide(self):
         """What a way along the tool does."""
