@@ -3,7 +3,8 @@ import os
 
 import pytest
 
-LONGEST = ("test_tooth_cycles", "test_cutting_3d", "test_temperatures", "test_laboratory", "test_combinations", "test_facets")
+LONGEST = ("test_tooth_cycles", "test_cutting_3d", "test_temperatures", "test_laboratory", "test_combinations",
+           "test_facets")
 """Modules that a worker is to begin first, so that none is left to one of them at the end."""
 
 

@@ -171,7 +171,7 @@ def write_page(folder, teeth, rows):
             middle, error = scatter(np.array([row[name] for row in of]))
             cells.append(f"{page.quantity(middle, unit)} ± {page.percent(error, middle)}")
         cuts.append([f"{100 * tooth['lost']:.1f} % lost", f"{math.degrees(tooth['rake']):.0f}°", *cells,
-                      *(page.quantity(tooth[name], "N/m") for name in ("Evans", "Nishimatsu"))])
+                     *(page.quantity(tooth[name], "N/m") for name in ("Evans", "Nishimatsu"))])
     header = ("tooth", "effective rake", *(label for label, _ in QUANTITIES.values()), "Evans", "Nishimatsu")
     section = page.Section(
         "Effect of wear on the cut", "The same specimens cut at the same depth by the new tooth and by its worn "

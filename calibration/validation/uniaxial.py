@@ -7,7 +7,7 @@ from calibration.validation.verdicts import Row, Section
 
 SEEDS = 1, 2, 3
 SOFT = {case: {**MAIN, **SOFTENING}[case] for case in ("damage 2e11", "damage 5e9", "damage 2e9", "plastic 2e10",
-                                                        "plastic 2e9")}
+                                                       "plastic 2e9")}
 SLOW = 0.025
 FAST_ENOUGH = 0.02
 """Allowed relative error of strength and E at the default speed."""

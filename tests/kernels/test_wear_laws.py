@@ -142,7 +142,8 @@ def test_uncertainty_of_one_row_is_its_error_and_of_many_their_scatter():
 @pytest.mark.parametrize("call, name", [
     (lambda: law_of("pressure", wear_coefficient=-1), "k"), (lambda: law_of("power", mu=0), "mu"),
     (lambda: law_of("power", wear_exponent=0), "exponent"), (lambda: law_of("power", wear_exponent=21), "exponent"),
-    (lambda: law_of("modes", wear_modes=""), "wear_modes"), (lambda: law_of("modes", wear_modes="1/1/0.5"), "wear_modes"),
+    (lambda: law_of("modes", wear_modes=""), "wear_modes"),
+    (lambda: law_of("modes", wear_modes="1/1/0.5"), "wear_modes"),
     (lambda: law_of("modes", wear_modes="1/1/x"), "wear_modes"), (lambda: SumOfModes([]), "modes"),
     (lambda: laboratory(PressureArchard(k=0)).__post_init__(), "depth"),
     (lambda: PowerLaw(k=1, mu=1, exponent=1).fit_exponent(laboratory(PressureArchard(k=K), [1e6, 2e6], [1, 1])),

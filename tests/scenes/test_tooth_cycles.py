@@ -217,7 +217,8 @@ def test_every_cycle_starts_on_the_rock_that_the_start_up_left(same_tool):
 def test_a_worn_tool_gets_the_time_to_come_to_the_rock(tmp_path):
     """Else a tooth whose tip has gone back by more than a cycle's way would meet no rock any more."""
     seconds = 6e-4
-    values = dict(heat="false", wear_acceleration=1e6, snapshot_period=1, start_up=seconds, cycles=3, cycle_time=seconds,
+    values = dict(heat="false", wear_acceleration=1e6, snapshot_period=1, start_up=seconds, cycles=3,
+                  cycle_time=seconds,
                   report="false")
     run = tooth_cycles(tmp_path / "whole", **values)
     model = np.load(run.out / "model.npz")
