@@ -53,7 +53,7 @@ def size_table(ways, off, segments):
             f"plane. Pattern: {1e6 * PATTERN_WORN:g} mm² worn by the friction work of a cut. Error: rms distance "
             "between the worn face and the exact one. Residual: of the volume balance, over Archard's volume, at most.",
             "", *generated.table(["mean diameter or length, mm", "particles, flat: error, mm", "pattern: error, mm",
-                                    "residual", "segments, flat: error, mm", "pattern: error, mm", "residual"], rows),
+                                  "residual", "segments, flat: error, mm", "pattern: error, mm", "residual"], rows),
             f"The error of particles is proportional to the size to the power {rates}, that of segments to the power "
             f"{rate([row.off for row in segments['flat']]):.2f} (flat).", ""]
 
