@@ -27,7 +27,8 @@ def receded(*, temperature, capacity, adjacent, leaving, share):
     hotter than the one in front of it was (of several neighbours there, the coldest), and the heat given is at most
     what the leaving particle holds above the coldest one. Where neighbouring columns share the particles below, the
     first layers are served first: heat and surface temperature are kept, and the profile behind is steeper than it was,
-    until conduction has evened it out.
+    until conduction has evened it out. Where only gone particles are behind a layer, the next one is that of the
+    nearest particles behind these.
 
     temperature (n,) K; capacity (n,) J/K, 0 for particles that are gone; adjacent: by `neighbours`. The sum of
     capacity * temperature is kept.
@@ -50,7 +51,11 @@ def _move_inwards(temperature, capacity, adjacent, one, there, share):
         outer, inner = np.repeat(layer, np.diff(rows.indptr)), rows.indices
         outer, inner = outer[unseen[inner]], inner[unseen[inner]]
         if not len(inner):
-            break
+            layer = _gone_before(unseen, adjacent, one)
+            if not len(layer):
+                break
+            before[layer] = temperature[one]
+            continue
         layer, place = np.unique(inner, return_inverse=True)
         limit = np.full(len(layer), np.inf)
         np.minimum.at(limit, place, before[outer])
@@ -60,6 +65,15 @@ def _move_inwards(temperature, capacity, adjacent, one, there, share):
         left -= part * wanted.sum()
         unseen[layer] = False
     return budget - left
+
+
+def _gone_before(unseen, adjacent, one):
+    """The gone particles, fewest pairs away from `one`, beside which `unseen` ones are; none if there are no such."""
+    layer = seen = np.array([one])
+    while len(layer) and not unseen[adjacent[layer].indices].any():
+        layer = np.setdiff1d(adjacent[layer].indices, seen)
+        seen = np.concatenate([seen, layer])
+    return layer
 
 
 def outside(points, vertices, facets):

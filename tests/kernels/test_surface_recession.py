@@ -34,6 +34,15 @@ def test_several_leave_one_after_another():
     assert found[3:] == pytest.approx(field[:-3], rel=1e-12)
 
 
+@pytest.mark.parametrize("leaving", [[0, 1, 2], [2, 1, 0], [1, 0, 2]])
+def test_of_several_that_leave_at_once_none_takes_heat_along(leaving):
+    """A particle whose neighbours have left before it transfers its heat to the nearest that are left."""
+    field = np.array([400.0, 350.0, 380.0] + 17 * [300.0])
+    found = receded(temperature=field, capacity=np.ones(20), adjacent=chain(20), leaving=leaving, share=1.0)
+    assert found[3:].sum() == pytest.approx(17 * 300 + 100 + 50 + 80, rel=1e-12)
+    assert found[:3] == pytest.approx(3 * [300], rel=1e-12)
+
+
 def test_wear_that_is_not_accelerated_takes_its_heat():
     field = 300 + 50 * np.exp(-np.arange(20) / 3)
     found = receded(temperature=field, capacity=np.ones(20), adjacent=chain(20), leaving=[0], share=0.0)
