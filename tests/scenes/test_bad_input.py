@@ -88,6 +88,8 @@ NOT_USED = [
     ({"bond_law": "padova", "H": 1e9}, "H = 1e+09 N/m: must be left out with bond_law = padova"),
     ({"wear_exponent": 2}, "wear_exponent = 2: must be left out with wear_law = dissipation"),
     ({"wear_modes": "0.01/1/1"}, "wear_modes = 0.01/1/1: must be left out with wear_law = dissipation"),
+    ({"wear_law": "modes", "wear_modes": "0.01/1/1", "wear_coefficient": 0.01},
+     "wear_coefficient = 0.01: must be left out with wear_law = modes"),
     ({"segment": 1e-3}, "segment = 0.001 m: must be left out with tool = particles"),
     ({"work_fraction": 0.5}, "work_fraction = 0.5: must be left out with tool = particles"),
     ({"reshape": "true"}, "reshape = true: must be left out with tool = particles"),
