@@ -128,8 +128,7 @@ class Cut(Scene):
 
     def _least_energy(self):
         """J that the run may hold whatever the tool's work: a heavy particle at five times the tool's speed, a fall
-        by a
-        radius."""
+        by a radius."""
         rock = self.rock
         fall = float(rock.masses.sum()) * self.gravity.g * float(rock.radii.max()) if self.gravity else 0.0
         return 25 * float(rock.masses.max()) * self.programme.fastest()**2 + fall

@@ -106,8 +106,8 @@ class CutOutput(Output):
         scene = self.scene
         columns = scene.recorder.columns()
         found = {"simulated_time": (scene.time, "s"), "time_step": (scene.time_step, "s"),
-                 "critical_time_step": (scene.critical_step, "s"), "bonded_critical_time_step": (scene.bonded_step,
-                                                                                                 "s"),
+                 "critical_time_step": (scene.critical_step, "s"),
+                 "bonded_critical_time_step": (scene.bonded_step, "s"),
                  **scene.notes, **scene.programme.results(columns), **scene.tool.results(), **scene.bonds.log(),
                  **{f"rock_{name}": value for name, value in scene.rock.report().items()}}
         if scene.tool.profile:

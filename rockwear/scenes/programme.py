@@ -26,7 +26,7 @@ class Programme(ABC):
 
     def attach(self, scene):
         """The scene whose programme this is."""
-        self.scene = scene
+        self.scene, self.start = scene, StartState(scene)
 
     @abstractmethod
     def stages(self):
@@ -90,23 +90,26 @@ class Programme(ABC):
 
     def state(self):
         """What must survive a restart."""
-        return {"path_start": self.path_start}
+        return {"path_start": self.path_start, "start": self.start.state()}
 
     def restore(self, state):
         """Take back what `state` gave."""
         self.path_start = int(state["path_start"])
+        self.start.restore(state["start"])
 
     def save(self, directory, folder):
         """Write files into `directory` of a checkpoint of the run in `folder`."""
+        self.start.save(directory, folder)
 
     def load(self, directory, folder):
         """Take the files back."""
+        self.start.load(directory, folder)
 
     # ---- what the folder of a run shows
 
     def cracks(self):
         """Bonds that broke in rock that has been replaced since."""
-        return []
+        return self.start.cracks
 
     def log(self):
         """{name: (value, unit)} of the history."""
@@ -132,6 +135,13 @@ class StartState:
 
     def __init__(self, scene):
         self.scene, self.kept, self.cracks = scene, {}, []
+
+    def begin_stage(self, folder):
+        """Keep what the first stage has left; put it back before each further one."""
+        if self.scene.stage == 1:
+            self.keep(folder)
+        elif not self.scene.finished:
+            self.put_back(folder)
 
     def keep(self, folder):
         """Keep what is there now."""
@@ -198,7 +208,6 @@ class Cycles(Programme):
         self.motion = Straight(start=(x, self.surface - self.depth_of_cut),
                                velocity=(self.velocity * self.time_scale, 0.0))
         self.foremost_when_new = scene.foremost()
-        self.start = StartState(scene)
 
     def stages(self):
         return self.times
@@ -218,10 +227,7 @@ class Cycles(Programme):
 
     def begin_stage(self, folder):
         scene = self.scene
-        if scene.stage == 1:
-            self.start.keep(folder)
-        elif not scene.finished:
-            self.start.put_back(folder)
+        self.start.begin_stage(folder)
         if not scene.finished:
             self._add_approach()
             if scene.tool.profile:
@@ -244,24 +250,13 @@ class Cycles(Programme):
 
     def state(self):
         steps = np.array([steps for _, steps in self.scene.stages])
-        return {**super().state(), "stage_steps": steps, "approach_steps": self.approach_steps,
-                "start": self.start.state()}
+        return {**super().state(), "stage_steps": steps, "approach_steps": self.approach_steps}
 
     def restore(self, state):
         super().restore(state)
         scene = self.scene
         scene.stages = [(name, int(steps)) for (name, _), steps in zip(scene.stages, state["stage_steps"])]
         self.approach_steps = state["approach_steps"].copy()
-        self.start.restore(state["start"])
-
-    def save(self, directory, folder):
-        self.start.save(directory, folder)
-
-    def load(self, directory, folder):
-        self.start.load(directory, folder)
-
-    def cracks(self):
-        return self.start.cracks
 
     def log(self):
         return {"working_time": (self.working_time, "s")}

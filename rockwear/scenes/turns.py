@@ -5,7 +5,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from rockwear.kernels.conduction import HeatNetwork
-from rockwear.scenes.programme import Programme, StartState
+from rockwear.scenes.programme import Programme
 
 COOLING_CHUNK = 20
 """Cooling steps between two looks at the clock."""
@@ -28,10 +28,6 @@ class Turns(Programme):
         self.approach_time, self.cut_time, self.turn_time = approach_time, cut_time, turn_time
         self.cycles, self.cooling_period, self.chip_area = cycles, cooling_period, chip_area
         self.cooled, self.worn_heat = 0, 0.0
-
-    def attach(self, scene):
-        super().attach(scene)
-        self.start = StartState(scene)
 
     def stages(self):
         found = {"approach": self.approach_time}
@@ -79,10 +75,7 @@ class Turns(Programme):
             if scene.heat:
                 scene.heat.leave_rock()
             return
-        if scene.stage == 1:
-            self.start.keep(folder)
-        elif not scene.finished:
-            self.start.put_back(folder)
+        self.start.begin_stage(folder)
         if scene.tool.profile and not scene.finished:
             scene.tool.profile.begin_cycle(scene.tool.mark_of_shape())
 
@@ -97,23 +90,13 @@ class Turns(Programme):
     # ---- what a checkpoint holds
 
     def state(self):
-        return {**super().state(), "cooled": self.cooled, "worn_heat": self.worn_heat, "start": self.start.state()}
+        return {**super().state(), "cooled": self.cooled, "worn_heat": self.worn_heat}
 
     def restore(self, state):
         super().restore(state)
         self.cooled, self.worn_heat = int(state["cooled"]), float(state["worn_heat"])
-        self.start.restore(state["start"])
-
-    def save(self, directory, folder):
-        self.start.save(directory, folder)
-
-    def load(self, directory, folder):
-        self.start.load(directory, folder)
 
     # ---- what the folder of a run shows
-
-    def cracks(self):
-        return self.start.cracks
 
     def log(self):
         return {"working_time": (self.scene.time, "s")}
