@@ -1,0 +1,328 @@
+"""Laboratory tests: a specimen of bonded rock, held and loaded at its two ends.
+
+The platens are the specimen's own discs at its left and right ends, which move along x at a constant speed, free across
+it and free to turn: each end is perfectly capped and without friction. Rough platens hold these discs across and
+against turning as well.
+"""
+import math
+from types import SimpleNamespace
+
+import numpy as np
+from yade import O
+
+from rockwear.engines import access
+from rockwear.engines.bonds import Bonds
+from rockwear.engines.energy_guard import EnergyGuard
+from rockwear.engines.failure import Failure
+from rockwear.engines.platens import Platens
+from rockwear.engines.recorder import Recorder
+from rockwear.engines.rock_friction import RockFriction
+from rockwear.engines.separation import Separation
+from rockwear.engines.velocity_increment import VelocityIncrement
+from rockwear.kernels.bond_laws import BOND_LAWS
+from rockwear.kernels.checks import require
+from rockwear.kernels.parameter import Group, Parameter, above_zero, choice, number, speed
+from rockwear.kernels.stability import critical_time_step
+from rockwear.model.rock import Specimen
+from rockwear.run import vtk
+from rockwear.scenes import parameters, yade_scene
+from rockwear.scenes.balances import with_residual
+from rockwear.scenes.output import Output, crack_table
+from rockwear.scenes.scene import Scene
+
+LOADING = (
+    Parameter("speed", 0.05, "m/s", speed, "of each platen", "make bench; [Rojek 2003, 5.1] has 0.001"),
+    Parameter("platens", "smooth", "", choice("smooth", "rough"), "rough: ends held across and against turning"),
+    Parameter("rotation", "free", "", choice("free", "blocked"), "of all discs; blocked: no disc ever turns"),
+    Parameter("grip", 0.0, "m", number(0), "discs with their centres so near an end move with the platen; 0: a "
+              "largest diameter"),
+    Parameter("damping", 0.3, "", number(0, 0.95), "Cundall's non-viscous damping", "measured, see UniaxialTest"),
+    Parameter("gauge", 0.5, "", number(0.05, 1), "middle part of length and height in which strain is measured"),
+    Parameter("drop", 0.5, "", number(0, 1), "the test ends where stress has fallen to this part of its peak"),
+    Parameter("strain_max", 0.02, "", above_zero, "the test ends at this shortening or lengthening over the width"),
+    Parameter("record_strain", 1e-5, "", above_zero, "shortening over the width between rows of history.csv"))
+"""Parameters of every test."""
+
+ELASTIC_RANGE = 0.1, 0.4
+"""Stresses over the peak between which E and nu are taken."""
+
+
+def groups(*own, **defaults):
+    """Parameter groups of a test. own: its own Parameters, before those of every test; defaults: other than there."""
+    return parameters.with_defaults(
+        [parameters.SPECIMEN.without("grading_factor", "fine_depth"), parameters.BONDS,
+         Group("loading", (*own, *LOADING)),
+         parameters.ACCURACY.only("time_step_fraction", "time_step", "rock_sampling_period")],
+        **{"time_step_fraction": 0.6, **defaults})
+
+
+class SpecimenTest(Scene):
+    """A test along x between two platens. values: {name: value} of all parameters of `groups`.
+
+    A test says `sign` (1: the platens part, -1: they approach), `output_class`, and where it differs from the others
+    what the methods _specimen, _ends, _gauge, _section, _durations, _mean_motion and _further_engines give, which
+    engines work on the specimen (`works`), and what falls when it fails (`strength_measure`).
+
+    Stress and strains count positive in the direction of the loading: stress is the platens' mean force over the
+    section, and axial and lateral strain are the slopes of the plane that fits best through the displacements of the
+    discs of the gauge. (The travel of the platens would count the ends' own compliance as rock.)
+    """
+
+    sign, output_class = -1, None
+
+    def __init__(self, values):
+        super().__init__()
+        v = self.v = SimpleNamespace(**values)
+        require(v.radius_max >= v.radius_min, "radius_max", v.radius_max, f"at least radius_min = {v.radius_min:g}",
+                "m")
+        self.law = BOND_LAWS[v.bond_law].from_values(values)
+        self.rock = rock = self._specimen()
+        self.left, self.right = self._ends()
+        self.prescribed = np.zeros(rock.count, bool)
+        self.prescribed[self.left] = self.prescribed[self.right] = True
+        self.section = self._section()
+        self.stress = 0.0
+        self._place_gauge()
+        self._choose_time_step()
+        self._plan(self._durations())
+        self.output = self.output_class(self)
+
+    # ---- what a test may give otherwise
+
+    def _specimen(self):
+        """The rock: of rockwear.model.rock."""
+        v = self.v
+        return Specimen(width=v.width, height=v.height, radius_min=v.radius_min, radius_max=v.radius_max,
+                        porosity=v.porosity, seed=v.seed, bonding_gap=v.bonding_gap, density=v.rock_density)
+
+    def _ends(self):
+        """Indices of the discs of the left and of the right platen."""
+        rock = self.rock
+        grip = self.v.grip or 2 * float(rock.radii.max())
+        x = rock.positions[:, 0]
+        left, right = np.flatnonzero(x < grip), np.flatnonzero(x > rock.width - grip)
+        require(len(left) and len(right), "grip", grip, "deep enough to hold a disc at each end", "m")
+        require(2 * grip < rock.width, "grip", grip, f"less than half the width {rock.width:g}", "m")
+        return left, right
+
+    def _gauge(self):
+        """Indices of the discs in whose displacements strain is measured."""
+        size = np.array([self.rock.width, self.rock.height])
+        off = np.abs(self.rock.positions - size / 2)
+        return np.flatnonzero(np.all(off <= 0.5 * self.v.gauge * size, axis=1))
+
+    def _section(self):
+        """m: stress is the platens' force over it."""
+        return self.rock.height
+
+    def _durations(self):
+        """{stage: s}."""
+        return {"loading": self.loading_time}
+
+    def _mean_motion(self):
+        """(along, across) (n,) m/s, of a homogeneous body with the lattice's nu between the platens."""
+        v, law, (x, y) = self.v, self.law, self.rock.positions.T
+        begin, end = x[self.left].mean(), x[self.right].mean()
+        rate = 2 * self.sign * v.speed / (end - begin)
+        along = rate * (x - 0.5 * (begin + end))
+        across = -rate * (law.kn - law.kt) / (3 * law.kn + law.kt) * (y - 0.5 * self.rock.height)
+        return along, across
+
+    def _further_engines(self):
+        """Engines of this test alone; they come between the bonds and the friction."""
+        return ()
+
+    def works(self):
+        """{name: J per metre} that has been done on the specimen."""
+        return {"platen_work": self.platens.work}
+
+    def strength_measure(self):
+        """Pa: the test ends where this has fallen."""
+        return self.stress
+
+    # ---- set-up
+
+    @property
+    def loading_time(self):
+        """s until strain_max."""
+        return self.v.strain_max * self.rock.width / (2 * self.v.speed)
+
+    def _place_gauge(self):
+        self.inside = self._gauge()
+        require(len(self.inside) > 1, "gauge", self.v.gauge, "wide enough to hold two discs")
+        # Least squares: displacement = a + slopes . position, solved once for the slopes.
+        points = np.column_stack([np.ones(len(self.inside)), self.rock.positions[self.inside]])
+        self.slopes = np.linalg.pinv(points)[1:]
+
+    def _choose_time_step(self):
+        v, rock, (kn, kt) = self.v, self.rock, self.law.stiffest()
+        self.critical_step = critical_time_step(
+            positions=rock.positions, radii=rock.radii, masses=rock.masses, inertias=rock.inertias, bonds=rock.pairs,
+            kn=kn, kt=kt)
+        require(v.time_step <= self.critical_step, "time_step", v.time_step,
+                f"at most the stable step {self.critical_step:.3e} of this scene", "s")
+        self.time_step = v.time_step or v.time_step_fraction * self.critical_step
+
+    def build(self):
+        """Fill YADE's scene: bodies, bonds, engines; the specimen already in its mean motion."""
+        O.reset()
+        v, rock = self.v, self.rock
+        yade_scene.put_rock_materials(mu=self.law.mu)
+        yade_scene.put_rock(rock)
+        yade_scene.put_loop(rock=self.law, damping=v.damping)
+        O.trackEnergy = True
+        self._make_engines()
+        yade_scene.make_bonds(rock, self.bonds)
+        self._hold_ends()
+        self._set_off()
+        self._insert_engines()
+        self.base = self.stored_energy()
+        self.canonical()
+
+    def _hold_ends(self):
+        rough = self.v.platens == "rough"
+        for i, prescribed in enumerate(self.prescribed):
+            state = O.bodies[i].state
+            state.blockedDOFs = ("x" if prescribed else "") + ("y" if prescribed and rough else "") + "zXY" + (
+                "Z" if self.v.rotation == "blocked" or prescribed and rough else "")
+            if prescribed:
+                # YADE would count what it damps of a motion that is prescribed.
+                state.isDamped = False
+
+    def _set_off(self):
+        """Put the specimen into its mean motion: set off from rest, it would ring."""
+        along, across = self._mean_motion()
+        along[self.left], along[self.right] = -self.sign * self.v.speed, self.sign * self.v.speed
+        across[self.prescribed & (self.v.platens == "rough")] = 0.0
+        for i, (vx, vy) in enumerate(zip(along.tolist(), across.tolist())):
+            O.bodies[i].state.vel = (vx, vy, 0)
+
+    def _make_engines(self):
+        v, rock = self.v, self.rock
+        row = max(1, round(v.record_strain * rock.width / (2 * v.speed * self.time_step)))
+        self.bonds = Bonds(pairs=rock.pairs, law=self.law, strength_factor=rock.strength_factor,
+                           clock=lambda: self.time)
+        inertias = np.full(rock.count, np.inf) if v.rotation == "blocked" else rock.inertias
+        motion = VelocityIncrement(masses=rock.masses, inertias=inertias, radii=rock.radii, fixed=self.prescribed)
+        self.rock_friction = RockFriction(bonds=self.bonds, motion=motion, period=v.rock_sampling_period)
+        self.platens = Platens(left=self.left.tolist(), right=self.right.tolist(), velocity=self.sign * v.speed,
+                               period=min(row, v.rock_sampling_period))
+        self.recorder = Recorder([self.output.log, self.bonds.log], period=row)
+        self.failure = Failure(stress=self.strength_measure, broken=lambda: self.bonds.cracks, drop=v.drop, period=row)
+        guard = EnergyGuard(work=lambda: sum(self.works().values()), floor=0.5 * rock.masses.sum() * v.speed**2,
+                            period=200)
+        self._register(self.bonds, *self._further_engines(), self.rock_friction, Separation(self.bonds, period=200),
+                       self.platens, self.recorder, self.failure, guard)
+
+    # ---- what is measured
+
+    def displacements(self):
+        """(n, 2) m since the specimen was bonded."""
+        return access.rock_positions(self.rock) - self.rock.positions
+
+    def strains(self):
+        """(axial, lateral) in the gauge now, positive in the direction of the loading."""
+        slopes = self.slopes @ self.displacements()[self.inside]
+        return self.sign * float(slopes[0, 0]), self.sign * float(slopes[1, 1])
+
+    # ---- what a checkpoint holds
+
+    def state(self):
+        return {**super().state(), "base": self.base, "stress": self.stress}
+
+    def restore(self, state, directory, folder):
+        super().restore(state, directory, folder)
+        self.base = {name: float(value) for name, value in state["base"].items()}
+        self.stress = float(state["stress"])
+
+
+class SpecimenOutput(Output):
+    """What the folder of a laboratory test shows."""
+
+    def log(self):
+        """{name: (value, unit)} of the history."""
+        pull, difference = self.scene.platens.take_mean()
+        self.scene.stress = self.scene.sign * pull / self.scene.section
+        axial, lateral = self.scene.strains()
+        travel = 2 * self.scene.v.speed * self.scene.time / self.scene.rock.width
+        return {"time": (self.scene.time, "s"), "stage": (self.scene.stage, "-"), "stress": (self.scene.stress, "Pa"),
+                "unbalanced_stress": (difference / self.scene.section, "Pa"), "axial_strain": (axial, "-"),
+                "lateral_strain": (lateral, "-"), "platen_strain": (travel, "-"),
+                "bond_breaking": (self.scene.bonds.energy_released, "J/m")}
+
+    def found(self, columns):
+        """{name: (value, unit)} that the history's columns show, the test's own results."""
+        return {}
+
+    def results(self):
+        """{name: (value, unit)} of the run."""
+        columns, scene = self.scene.recorder.columns(), self.scene
+        found = {"failed": (bool(scene.strength_measure() < scene.v.drop * scene.failure.peak), "-")}
+        if columns:
+            found.update(self.found(columns))
+            for name in ("tensile_cracks", "shear_cracks"):
+                found[f"{name}_at_peak"] = int(columns[name][columns["stress"].argmax()]), "-"
+        return {**found, "simulated_time": (scene.time, "s"), "time_step": (scene.time_step, "s"),
+                "critical_time_step": (scene.critical_step, "s"), **scene.bonds.log(),
+                **{f"rock_{name}": value for name, value in scene.rock.report().items()}}
+
+    def _damped(self):
+        return O.energy["nonviscDamp"] if "nonviscDamp" in O.energy.keys() else 0.0
+
+    def balances(self):
+        """The energy balance, J per metre of thickness: the work on the specimen, where it went, and what the balance
+        misses."""
+        source, *others = works = self.scene.works()
+        balance = {source: works[source], **{name: -works[name] for name in others}}
+        balance.update({name: now - self.scene.base[name] for name, now in self.scene.stored_energy().items()})
+        balance.update(rock_friction=self.scene.rock_friction.total, bond_breaking=self.scene.bonds.energy_released,
+                       numerical_damping=self._damped())
+        return {"energy": (with_residual(balance, source), "J/m")}
+
+    def model(self):
+        """Arrays that stay the same all through a run."""
+        rock = self.scene.rock
+        return {"rock_positions": rock.positions, "rock_radii": rock.radii, "bonds": rock.pairs,
+                "rock_prescribed": self.scene.prescribed, "gauge": self.scene.inside,
+                "box": np.array([rock.width, rock.height])}
+
+    def snapshot(self):
+        """Arrays that show the scene now."""
+        broken = np.bincount(self.scene.rock.pairs[self.scene.bonds.status !=
+                             0].ravel(), minlength=self.scene.rock.count)
+        return {"time": self.scene.time, "stage": self.scene.stage,
+                "rock_positions": access.rock_positions(self.scene.rock), "displacement": self.scene.displacements(),
+                "broken_bonds": broken, "status": self.scene.bonds.status, "softening": self.scene.bonds.softening()}
+
+    def write_vtk(self, folder, number):
+        """rock.NNNN.vtk: diameter, broken bonds, displacement."""
+        shot = self.snapshot()
+        x, y = shot["displacement"].T
+        vtk.write(folder / f"rock.{number:04d}.vtk", shot["rock_positions"],
+                  {"diameter": 2 * self.scene.rock.radii, "broken_bonds": shot["broken_bonds"], "displacement_x": x,
+                   "displacement_y": y})
+
+    def tables(self):
+        return crack_table(self.scene.bonds.cracks)
+
+    def progress(self):
+        return f"{self.scene.stress / 1e6:.3g} MPa, {len(self.scene.bonds.cracks)} cracks"
+
+
+def measured(*, stress, axial_strain, lateral_strain):
+    """{name: (value, unit)} of a stress-strain curve: its peak, and E and nu as slopes in ELASTIC_RANGE before it.
+
+    stress: (n,) Pa; strains: (n,), all positive in the direction of the loading. nan where fewer than three rows are
+    in the range.
+    """
+    peak = int(np.argmax(stress))
+    low, high = (part * stress[peak] for part in ELASTIC_RANGE)
+    # From the last row below the range to the first above it, so that a stray row counts for nothing.
+    above = int(np.argmax(stress >= high))
+    rows = np.flatnonzero((stress[:above] >= low) & (stress[:above] <= high))
+    modulus = ratio = math.nan
+    if len(rows) > 2:
+        modulus = np.polyfit(axial_strain[rows], stress[rows], 1)[0]
+        ratio = -np.polyfit(axial_strain[rows], lateral_strain[rows], 1)[0]
+    return {"peak_stress": (float(stress[peak]), "Pa"), "peak_strain": (float(axial_strain[peak]), "-"),
+            "youngs_modulus": (float(modulus), "Pa"), "poissons_ratio": (float(ratio), "-")}
