@@ -5,6 +5,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from calibration.generated import ROOT
+from rockwear.model import rock_file
 from rockwear.report.folder import RunFolder
 from rockwear.run.checkpoint import digest
 
@@ -63,11 +64,15 @@ def finished(folder, values):
     try:
         summary = RunFolder(folder).summary
         parameters = summary["parameters"]
-        same_files = all(digest(Path(parameters[name])) == found for name, found in summary["files"].items())
+        same_files = all(digest(_path(name, parameters[name])) == found for name, found in summary["files"].items())
     except (OSError, ValueError, KeyError):
         return False
     return summary["exit_code"] == 0 and same_files and all(
         name in parameters and _same(parameters[name], value) for name, value in values.items())
+
+
+def _path(name, value):
+    return rock_file.find(value) if name == "rock" else Path(value)
 
 
 def _same(stored, value):

@@ -1,4 +1,5 @@
 """Parameters, their rules and groups: name, default, unit, meaning, source, and when they are used."""
+from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
 from typing import Any, Callable
 
@@ -94,6 +95,21 @@ def file(name, value, unit):
     return str(value)
 
 
+class Presets(ABC):
+    """A file that gives other parameters their defaults."""
+
+    @abstractmethod
+    def path(self, value):
+        """Path of the file that the parameter's value names. Raises ParameterError where there is none."""
+
+    @abstractmethod
+    def defaults(self, value, values):
+        """{name: value} that the file gives. values: of all parameters, without those of the file.
+
+        Raises ParameterError for a file that cannot be used.
+        """
+
+
 @dataclass(frozen=True)
 class Parameter:
     """One value that a user may give.
@@ -101,6 +117,9 @@ class Parameter:
     name, default, unit (SI; "" without one), rule, meaning, source: where the default comes from
     when: {name of another parameter: (values,)}: used only where every other has one of these values. A condition on a
     parameter that a scene does not declare is met.
+    size_power: powers of the size of the rock's particles with which the value grows, in the plane and in space, so
+    that the rock stays the same: lengths grow with it, stresses stay
+    presets: of a parameter whose value names a file with the values of others: see Presets
     """
 
     name: str
@@ -110,6 +129,8 @@ class Parameter:
     meaning: str
     source: str = "ours"
     when: dict | None = None
+    size_power: tuple = (0, 0)
+    presets: Any = None
 
     def check(self, value):
         """The value as the rule's type. Raises ParameterError."""

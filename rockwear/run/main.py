@@ -89,8 +89,9 @@ def _check_steps(scene, values, declared):
 
 def _files(values, declared):
     """{parameter: Path} of the files that are read."""
-    names = [name for name, p in parameters.flat(declared).items() if p.rule is file and values[name]]
-    return {name: Path(values[name]) for name in names if Path(values[name]).is_file()}
+    given = {name: p for name, p in parameters.flat(declared).items() if values[name] and (p.rule is file or p.presets)}
+    paths = {name: p.presets.path(values[name]) if p.presets else Path(values[name]) for name, p in given.items()}
+    return {name: path for name, path in paths.items() if path.is_file()}
 
 
 def _identity(name, values, declared):

@@ -3,6 +3,7 @@ import argparse
 import difflib
 import os
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 from rockwear.kernels.checks import ParameterError, require
@@ -33,20 +34,36 @@ def read(groups, arguments):
     """{name: checked value} of all parameters, from `--name value` arguments and the row that yade-batch gives.
 
     groups: Groups, or single Parameters. A flag may stand without a value. Raises ParameterError for an unknown name, a
-    missing value, a broken rule, and for a parameter that is given but not used with the others.
+    missing value, a broken rule, and for a parameter that is given but not used with the others. What a file of
+    presets gives replaces the declared defaults; what is given beside it goes before.
     """
     known = flat(groups)
     given = {**_table_row(), **_arguments(groups, arguments)}
     for name, value in given.items():
         if name not in known:
             raise ParameterError(name, value, _advice(name, known))
-    values = {name: parameter.check(given.get(name, parameter.default)) for name, parameter in known.items()}
+    known = _with_presets(known, given)
+    values = _checked(known, given)
     for name in given:
         reason = unmet(known[name], values, known)
         if reason:
             raise ParameterError(name, _word(values[name]), f"left out with {reason} = {_word(values[reason])}",
                                  known[name].unit)
     return values
+
+
+def _checked(known, given):
+    return {name: parameter.check(given.get(name, parameter.default)) for name, parameter in known.items()}
+
+
+def _with_presets(known, given):
+    """{name: Parameter} with the defaults of the files that presets name."""
+    values = _checked(known, given)
+    found = {}
+    for name, parameter in known.items():
+        if parameter.presets and values[name]:
+            found.update(parameter.presets.defaults(values[name], values))
+    return {name: replace(parameter, default=found.get(name, parameter.default)) for name, parameter in known.items()}
 
 
 def _advice(name, known):
@@ -88,6 +105,8 @@ def _parser(groups):
 
 def _metavar(parameter):
     options = getattr(parameter.rule, "options", ("true", "false") if parameter.rule is flag else ())
+    if parameter.presets:
+        return "NAME|FILE"
     return "|".join(options) or parameter.unit or {text: "TEXT", file: "FILE"}.get(parameter.rule, "NUMBER")
 
 

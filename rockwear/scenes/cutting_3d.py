@@ -39,8 +39,9 @@ SETTLING = (
 LOOSE_GROUPS = [
     {"bonds": parameters.LOOSE, "motion": Group("motion", (*group.parameters, *SETTLING))}.get(group.title, group)
     for group in GROUPS if group.title != "heat"]
-SCALED = {"m": 1, "N/m": 1, "N": 2, "N^(2/3)/m": 1 / 3}
-"""Powers of the scale factor by the unit of what it scales: lengths grow with it, stresses stay."""
+SCALED = {**{p.name: p.size_power[1] for group in (parameters.BONDS, parameters.CONTACT) for p in group.parameters},
+          "radius": 1, "tool_radius": 1, "thermal_radius": 1}
+"""Powers of the scale factor with which parameters grow: lengths with it, while stresses stay."""
 
 
 def groups(**defaults):
@@ -89,10 +90,9 @@ def scaled(values):
     """The parameters with the scale factor applied."""
     v = SimpleNamespace(**values)
     c = v.scale_factor = 1.0 if v.full else v.scale_factor
-    sized = {p.name: p.unit for group in (parameters.BONDS, parameters.CONTACT) for p in group.parameters}
-    for name, unit in {**sized, "radius": "m", "tool_radius": "m", "thermal_radius": "m"}.items():
-        if name in values and unit in SCALED:
-            setattr(v, name, c**SCALED[unit] * values[name])
+    for name, power in SCALED.items():
+        if power and name in values:
+            setattr(v, name, c**power * values[name])
     return v
 
 

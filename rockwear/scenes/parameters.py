@@ -4,9 +4,10 @@ from rockwear.kernels.conduction import PATHS
 from rockwear.kernels.erosion import REMOVAL
 from rockwear.kernels.parameter import (
     Group, Parameter, above_zero, choice, density, duration, file, flag, integer, law_parameters, number, speed,
-    stiffness)
+    stiffness, text)
 from rockwear.kernels.wear_laws import WEAR_LAWS
 from rockwear.model.materials import SANDSTONE, STEEL
+from rockwear.model.rock_file import RockPresets
 
 HARDNESS_TABLES = "MET71", "MET91"
 BY_TABLE = {"hardness": (0.0,)}
@@ -40,14 +41,26 @@ BLOCK = Group("rock", (
     Parameter("rock_density", SANDSTONE.density, "kg/m3", density, "bulk density of the rock", "[Rojek 2003, 7.4]"),
     Parameter("gravity", 9.81, "m/s2", number(0), "downwards", "[Rojek 2003, 13.1]")))
 
-BONDS = Group("bonds", (
+BOND_PARAMETERS = (
     Parameter("bond_law", "brittle", "", choice(*BOND_LAWS), "force law of a bond", "[Rojek 2003, ch. 4]"),
     *law_parameters(BOND_LAWS, "bond_law"),
     Parameter("bonding_gap", 1e-4, "m", number(0), "largest gap that is bonded",
-              "[Rojek 2014, eq. 6]; the value is ours")))
+              "[Rojek 2014, eq. 6]; the value is ours", size_power=(1, 1)))
+OF_ROCK = {p.name: p for p in (*BOND_PARAMETERS, *SPECIMEN.only("porosity", "rock_density"))}
+"""What the file of a rock may give."""
 
-LOOSE = Group("bonds", tuple(p for p in law_parameters({"brittle": BOND_LAWS["brittle"]}, "bond_law")
-                             if p.name in ("kn", "kt", "mu")))
+
+def rock_parameter(**options):
+    """The parameter that names the file of a rock. options: of RockPresets."""
+    return Parameter("rock", "", "", text, "a rock of the library, or the file of your own: it gives the values that "
+                     "follow their defaults, converted to the radii of the scene",
+                     "ours", presets=RockPresets(OF_ROCK, **options))
+
+
+BONDS = Group("bonds", (rock_parameter(), *BOND_PARAMETERS))
+
+LOOSE = Group("bonds", (rock_parameter(only=("kn", "kt", "mu", "rock_density")), *(
+    p for p in law_parameters({"brittle": BOND_LAWS["brittle"]}, "bond_law") if p.name in ("kn", "kt", "mu"))))
 """Contacts of rock that was never bonded."""
 
 # ---- tool
@@ -107,8 +120,9 @@ SPACE_TOOL = Group("tool", (
         tooth_height=0.14, tooth_width=0.0758, rake=30.0, clearance=20.0, reshape=False)
 
 CONTACT = Group("contact of tool and rock", (
-    Parameter("tool_kn", 90e9, "N/m", stiffness, "normal stiffness", "[Rojek 2003, 9.2]"),
-    Parameter("tool_kt", 90e9, "N/m", stiffness, "tangential stiffness", "as tool_kn: no source gives one"),
+    Parameter("tool_kn", 90e9, "N/m", stiffness, "normal stiffness", "[Rojek 2003, 9.2]", size_power=(0, 1)),
+    Parameter("tool_kt", 90e9, "N/m", stiffness, "tangential stiffness", "as tool_kn: no source gives one",
+              size_power=(0, 1)),
     Parameter("tool_mu", 0.3, "", above_zero, "friction", "[Rojek 2003, 9.2]"),
     Parameter("contact_damping", 0.9, "", number(0, 1), "dashpot, as a fraction of the critical one",
               "[Rojek 2003, 9.2]")))

@@ -29,11 +29,14 @@ from rockwear.kernels.parameter import Parameter, above_zero, number, stiffness
 BOND_LAWS = {}
 """{name: class} of all laws."""
 
-KN = Parameter("kn", 20e9, "N/m", stiffness, "normal stiffness of bonds and rock contacts", "[Rojek 2003, 5.1]")
-KT = Parameter("kt", 20e9, "N/m", stiffness, "tangential stiffness", "[Rojek 2003, 5.1]")
-RN = Parameter("Rn", 0.1e6, "N", above_zero, "tensile strength of a bond", "[Rojek 2003, 5.1]")
-RT = Parameter("Rt", 1e6, "N", above_zero, "shear strength of a bond", "[Rojek 2003, 5.1]")
-SLOPE = Parameter("H", 1e10, "N/m", above_zero, "slope of softening, against total displacement", "[Rojek 2003, 4.6]")
+KN = Parameter("kn", 20e9, "N/m", stiffness, "normal stiffness of bonds and rock contacts", "[Rojek 2003, 5.1]",
+               size_power=(0, 1))
+KT = Parameter("kt", 20e9, "N/m", stiffness, "tangential stiffness", "[Rojek 2003, 5.1]", size_power=(0, 1))
+RN = Parameter("Rn", 0.1e6, "N", above_zero, "tensile strength of a bond", "[Rojek 2003, 5.1]",
+               size_power=(1, 2))
+RT = Parameter("Rt", 1e6, "N", above_zero, "shear strength of a bond", "[Rojek 2003, 5.1]", size_power=(1, 2))
+SLOPE = Parameter("H", 1e10, "N/m", above_zero, "slope of softening, against total displacement", "[Rojek 2003, 4.6]",
+                  size_power=(0, 1))
 MU = Parameter("mu", 0.839, "", number(0), "friction between rock particles after breakage", "[Rojek 2003, 5.1]")
 """KN to MU: parameters that several laws share."""
 

@@ -64,17 +64,17 @@ class NonlinearElastoPlastic(BondLaw):
     parameters = (
         KN, RN, MU,
         Parameter("padova_m", 2e8, "N^(2/3)/m", above_zero, "m of the tangential stiffness kt = m cbrt(||Fn| - r|), "
-                  "9.3e9 N/m at Fn = 0", "ours: a bond of [Rojek 2003, 4.6]; eq. 4.13"),
+                  "9.3e9 N/m at Fn = 0", "ours: a bond of [Rojek 2003, 4.6]; eq. 4.13", size_power=(-1 / 3, 1 / 3)),
         Parameter("padova_r", -1e5, "N", number(), "r of the tangential stiffness; below 0: any normal force stiffens",
-                  "ours: -Rn; [Rojek 2003, eq. 4.13]"),
+                  "ours: -Rn; [Rojek 2003, eq. 4.13]", size_power=(1, 2)),
         Parameter("padova_eta", 0.8, "", above_zero, "eta of the shear strength eta (c - Fn)",
                   "ours; [Rojek 2003, eq. 4.12]"),
         Parameter("padova_cohesion", 1.25e5, "N", above_zero, "c of the shear strength; eta c is its value at Fn = 0",
-                  "ours: eta c = Rn, as in [Rojek 2003, 4.6]; eq. 4.12"),
+                  "ours: eta c = Rn, as in [Rojek 2003, 4.6]; eq. 4.12", size_power=(1, 2)),
         Parameter("padova_tension_b2", -5e9, "N/m", number(high=0.0), "slope of the tensile strength against plastic "
-                  "opening; below 0: softening", "ours; [Rojek 2003, eq. 4.9]"),
+                  "opening; below 0: softening", "ours; [Rojek 2003, eq. 4.9]", size_power=(0, 1)),
         Parameter("padova_shear_b2", -5e9, "N/m", number(high=0.0), "slope of the shear strength against plastic slip; "
-                  "below 0: softening", "ours; [Rojek 2003, eq. 4.9]"),
+                  "below 0: softening", "ours; [Rojek 2003, eq. 4.9]", size_power=(0, 1)),
     )
 
     def __init__(self, *, kn=2e10, m=2e8, r=-1e5, eta=0.8, c=1.25e5, Rn=1e5, Rc=math.inf, tension=Parabolic(b2=-5e9),

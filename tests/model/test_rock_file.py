@@ -1,0 +1,209 @@
+"""Rock files: the values they give a scene, their conversion to its radii, and one line for each mistake in them."""
+import copy
+import json
+
+import pytest
+
+from rockwear.kernels.checks import ParameterError
+from rockwear.model import rock_file
+from rockwear.run import parameters
+from rockwear.scenes.parameters import BLOCK, BONDS, LOOSE, OF_ROCK, SPECIMEN
+
+PLANE, SPACE = [SPECIMEN, BONDS], [BLOCK, BONDS]
+BRITTLE = {"bond_law": "brittle", "kn": 18e9, "kt": 8e9, "Rn": 4e4, "Rt": 4e5, "mu": 0.8, "bonding_gap": 1e-4,
+           "porosity": 0.1}
+ROCK = {
+    "format": 1, "name": "slate", "source": "a report",
+    "targets": {"youngs_modulus": {"value": 18e9, "unit": "Pa"}, "poissons_ratio": {"value": 0.18, "unit": ""},
+                "ucs": {"value": 60e6, "unit": "Pa"}, "tensile_strength": {"value": 7e6, "unit": "Pa"},
+                "friction_angle": {"value": 40, "unit": "deg"},
+                "triaxial": {"value": [[0, 60e6], [5e6, 90e6]], "unit": "Pa"}},
+    "plane": {"parameters": BRITTLE, "resolution": {"radius_min": 1e-3, "radius_max": 1.5e-3},
+              "measured": {"ucs": {"mean": 59e6, "standard_deviation": 3e6, "packings": 5, "unit": "Pa"},
+                           "triaxial": {"mean": [[0, 60e6]], "standard_deviation": [1e6], "packings": 2,
+                                        "unit": "Pa"}}},
+    "space": {"parameters": {**BRITTLE, "kn": 1e8, "kt": 5e7, "Rn": 800.0, "Rt": 8000.0, "bonding_gap": 5e-4,
+                             "porosity": 0.38, "rock_density": 2400.0},
+              "resolution": {"radius": 6e-3}, "measured": {}}}
+
+
+@pytest.fixture(autouse=True)
+def no_batch(monkeypatch):
+    monkeypatch.delenv("YADE_BATCH", raising=False)
+
+
+def written(folder, data=ROCK):
+    """Path of a rock file."""
+    path = folder / "slate.json"
+    path.write_text(data if isinstance(data, str) else json.dumps(data), encoding="utf-8")
+    return path
+
+
+def read(groups, *words):
+    return parameters.read(groups, [str(word) for word in words])
+
+
+def test_the_file_replaces_the_defaults_and_what_is_given_goes_before(tmp_path):
+    rock = written(tmp_path)
+    assert {name: read(PLANE, "--rock", rock)[name] for name in BRITTLE} == BRITTLE
+    found = read(PLANE, "--rock", rock, "--kn", "3e10", "--porosity", "0.13")
+    assert (found["kn"], found["porosity"], found["kt"]) == (3e10, 0.13, 8e9)
+    # Another law: what the file has for it stays, the rest is the law's own.
+    found = read(PLANE, "--rock", rock, "--bond_law", "damage", "--H", "2e9")
+    assert (found["bond_law"], found["H"], found["Rn"]) == ("damage", 2e9, 4e4)
+    assert read(PLANE, "--rock", rock)["rock"] == str(rock) and read(PLANE)["kt"] == 20e9
+
+
+def test_a_cell_of_a_table_names_the_rock(tmp_path, monkeypatch):
+    monkeypatch.setattr(parameters, "_table_row", lambda: {"rock": str(written(tmp_path)), "Rn": "5e4"})
+    found = read(PLANE)
+    assert (found["kn"], found["Rn"]) == (18e9, 5e4)
+
+
+def test_values_are_converted_to_the_radii_of_the_scene_but_not_those_given(tmp_path):
+    rock = written(tmp_path)
+    found = read(PLANE, "--rock", rock, "--radius_min", 2e-3, "--radius_max", 3e-3, "--Rt", 4e5)
+    expected = {"kn": 18e9, "kt": 8e9, "Rn": 8e4, "Rt": 4e5, "mu": 0.8, "bonding_gap": 2e-4, "porosity": 0.1}
+    assert {name: found[name] for name in expected} == pytest.approx(expected)
+    # In space stresses stay with forces over the square of the radius. The scene itself applies its scale_factor.
+    found = read(SPACE, "--rock", rock, "--radius", 12e-3, "--scale_factor", 3)
+    assert (found["kn"], found["kt"]) == pytest.approx((2e8, 1e8))
+    assert (found["Rn"], found["Rt"], found["bonding_gap"]) == pytest.approx((3200, 32000, 1e-3))
+    assert (found["rock_density"], found["porosity"], found["radius"]) == (2400, 0.38, 12e-3)
+
+
+@pytest.mark.parametrize("law, radius, expected", [
+    ("damage", 2.0, {"Rn": 2e5, "kn": 2e10, "H": 1e10}), ("padova", 2.0, {
+        "padova_m": 2e8 / 2**(1 / 3), "padova_r": -2e5, "padova_eta": 0.8, "padova_cohesion": 2.5e5,
+        "padova_tension_b2": -5e9})])
+def test_every_law_keeps_its_stresses_over_the_radius(law, radius, expected, tmp_path):
+    values = {name: p.default for name, p in OF_ROCK.items()}
+    used = {name: values[name] for name, p in OF_ROCK.items() if law in (p.when or {"bond_law": (law,)})["bond_law"]}
+    data = copy.deepcopy(ROCK)
+    data["plane"]["parameters"] = {**used, "bond_law": law}
+    found = read(PLANE, "--rock", written(tmp_path, data), "--radius_min", radius * 1e-3, "--radius_max",
+                 radius * 1.5e-3)
+    assert {name: found[name] for name in expected} == pytest.approx(expected)
+
+
+def test_loose_rock_takes_contacts_and_density_alone(tmp_path):
+    found = read([BLOCK.with_defaults(porosity=0.42), LOOSE], "--rock", written(tmp_path), "--radius", 6e-3)
+    assert (found["kn"], found["mu"], found["rock_density"], found["porosity"]) == (1e8, 0.8, 2400, 0.42)
+
+
+def test_targets_and_measurements_are_read(tmp_path):
+    rock = rock_file.read(written(tmp_path), OF_ROCK)
+    assert rock.targets["triaxial"] == [(0, 60e6), (5e6, 90e6)] and rock.targets["ucs"] == 60e6
+    assert rock.parts["plane"].measured["ucs"] == {"mean": 59e6, "standard_deviation": 3e6, "packings": 5}
+
+
+def test_every_rock_of_the_library_can_be_used():
+    assert "m_sandstone" in rock_file.library()
+    for name in rock_file.library():
+        rock = rock_file.read(rock_file.find(name), OF_ROCK)
+        assert rock.name == name
+        assert read({"plane": PLANE, "space": SPACE}[next(iter(rock.parts))], "--rock", name)["rock"] == name
+    # The first of them is the scenes' own rock.
+    assert {**read(PLANE, "--rock", "m_sandstone"), "rock": ""} == read(PLANE)
+
+
+def changed(path, value):
+    """ROCK with another value at a path of keys, or without it."""
+    data = copy.deepcopy(ROCK)
+    place = data
+    *keys, last = path.split("/")
+    for key in keys:
+        place = place[key]
+    if value is None:
+        del place[last]
+    else:
+        place[last] = value
+    return data
+
+
+REFUSED = [
+    (changed("format", 2), "format = 2: must be 1"),
+    (changed("name", 3), "name = 3: must be a text"),
+    (changed("source", None), "must be with the key source"),
+    (changed("colour", "red"), "the file = colour: must be one of format, name, source, targets, plane, space"),
+    (changed("plane/resolution", None), "must be with the key resolution"),
+    (changed("plane/resolution/radius_max", None), "must be with the key radius_max"),
+    (changed("plane/resolution/radius_max", 5e-4), "radius_max = 0.0005 m: must be at least radius_min = 0.001"),
+    (changed("plane/resolution/radius_min", 1), "radius_min = 1 m: must be between 1e-06 and 0.1"),
+    (changed("plane/parameters/kn", None),
+     "plane.parameters = bond_law, kt, Rn, Rt, mu, bonding_gap, porosity: must be with the key kn"),
+    (changed("plane/parameters/bond_law", None), "must be with the key bond_law"),
+    (changed("plane/parameters/bond_law", "magic"), "bond_law = magic: must be one of brittle"),
+    (changed("plane/parameters/bond_law", "damage"), "must be with the key H"),
+    (changed("plane/parameters/H", 1e10), "plane.parameters.H = 1e+10 N/m: must be left out with bond_law = brittle"),
+    (changed("plane/parameters/kk", 1e10), "kk: must be one of"),
+    (changed("plane/parameters/knn", 1e10), "did you mean kn"),
+    (changed("plane/parameters/velocity", 4), "velocity: must be one of"),
+    (changed("plane/parameters/kn", -1), "plane.parameters.kn = -1 N/m: must be greater than 0"),
+    (changed("plane/parameters/kn", "18e9"), 'plane.parameters.kn = "18e9" N/m: must be a number'),
+    (changed("plane/parameters/kn", True), "plane.parameters.kn = true N/m: must be a number"),
+    (changed("plane/parameters/kn", [1]), "plane.parameters.kn = [1] N/m: must be a number"),
+    (changed("plane/parameters/kn", float("nan")), "plane.parameters.kn = nan N/m: must be finite"),
+    (changed("plane/parameters/Rn", float("inf")), "plane.parameters.Rn = inf N: must be finite"),
+    (changed("plane/parameters/kn", 18e3), "plane.parameters.kn = 18000 N/m: must be between 1e+06 and 1e+13"),
+    (changed("plane/parameters/kn", 18e15), "plane.parameters.kn = 1.8e+16 N/m: must be between"),
+    (changed("plane/parameters/Rn", 0.04), "plane.parameters.Rn = 0.04 N: must be between 2.5 and 2.5e+08"),
+    (changed("plane/parameters/Rn", 4e10), "plane.parameters.Rn = 4e+10 N: must be between 2.5 and 2.5e+08"),
+    (changed("space/parameters/kn", 100.0), "space.parameters.kn = 100 N/m: must be between 1.2e+04"),
+    (changed("space/parameters/Rn", 8e8), "space.parameters.Rn = 8e+08 N: must be between"),
+    (changed("targets/youngs_modulus/value", 18), "targets.youngs_modulus = 18 Pa: must be between 1e+07 and 1e+12"),
+    (changed("targets/youngs_modulus/value", 18e6), "youngs_modulus = 1.8e+07 Pa: must be at least 10 times ucs"),
+    (changed("targets/youngs_modulus/value", 18e15), "targets.youngs_modulus = 1.8e+16 Pa: must be between"),
+    (changed("targets/youngs_modulus/unit", "GPa"), "targets.youngs_modulus.unit = GPa: must be Pa"),
+    (changed("targets/youngs_modulus/unit", None), "must be with the key unit"),
+    (changed("targets/ucs/value", 60), "targets.ucs = 60 Pa: must be between 10000 and 1e+09"),
+    (changed("targets/ucs/value", 60e12), "targets.ucs = 6e+13 Pa: must be between 10000 and 1e+09"),
+    (changed("targets/ucs/value", 6e6), "targets.ucs = 6e+06 Pa: must be more than tensile_strength = 7e+06"),
+    (changed("targets/poissons_ratio/value", 0.6), "targets.poissons_ratio = 0.6: must be between -1 and 0.5"),
+    (changed("targets/friction_angle/value", 0.7), "targets.friction_angle = 0.7 deg: must be between 2 and 89"),
+    (changed("targets/strength", {"value": 1, "unit": "Pa"}), "targets = strength: must be one of youngs_modulus"),
+    (changed("targets/triaxial/value", [[5e6, 4e6]]), "sigma1 = 4e+06 Pa: must be more than sigma3 = 5e+06"),
+    (changed("targets/triaxial/value", [[5, 60e6]]), "sigma3 = 5 Pa: must be 0 or at least 1000"),
+    (changed("targets/triaxial/value", [5e6]), "targets.triaxial = [5000000.0]: must be a list of [sigma3, sigma1]"),
+    (changed("plane/measured/ucs/packings", 0), "plane.measured.ucs.packings = 0: must be a whole number"),
+    (changed("plane/measured/ucs/mean", 59), "plane.measured.ucs = 59 Pa: must be between"),
+    (changed("plane/measured/ucs/standard_deviation", -1), "standard_deviation = -1 Pa: must be at least 0"),
+    (changed("plane/measured/triaxial/standard_deviation", 1e6), "must be a number; of triaxial a list"),
+    (changed("plane", "rock"), 'plane = "rock": must be an object'),
+    ({"format": 1, "name": "a", "source": "b", "targets": {}}, "must be with a part for plane or space"),
+    ([1, 2], "the file = [1, 2]: must be an object"), ("{", "must be a readable JSON file"),
+    ("", "must be a readable JSON file"), ('{"format": 1, "format": 1}', "format is there twice")]
+
+
+@pytest.mark.parametrize("data, words", REFUSED, ids=[words for _, words in REFUSED])
+def test_mistakes_are_said_in_one_line(data, words, tmp_path):
+    with pytest.raises(ParameterError) as caught:
+        read(PLANE, "--rock", written(tmp_path, data))
+    said = str(caught.value)
+    assert said.startswith("rock = ") and words in said and "\n" not in said
+
+
+@pytest.mark.parametrize("word", ["granite", "granite.json", "/", "a" * 5000, "no\0file"])
+def test_a_rock_that_is_not_there(word):
+    with pytest.raises(ParameterError, match="must be a file, or one of .*m_sandstone"):
+        read(PLANE, "--rock", word)
+
+
+def test_a_name_that_is_nearly_one_of_the_library():
+    with pytest.raises(ParameterError, match="did you mean m_sandstone$"):
+        read(PLANE, "--rock", "m_sandston")
+
+
+def test_bytes_that_are_no_text(tmp_path):
+    path = tmp_path / "bad.json"
+    path.write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(ParameterError, match="must be a readable JSON file"):
+        read(PLANE, "--rock", path)
+
+
+def test_a_scene_that_the_rock_has_nothing_for(tmp_path):
+    rock = written(tmp_path, changed("space", None))
+    with pytest.raises(ParameterError, match="must be a rock with a part for the space: .* plane alone"):
+        read(SPACE, "--rock", rock)
+    with pytest.raises(ParameterError, match="plane.parameters.porosity = 0.1: must be a parameter of this scene"):
+        read([SPECIMEN.without("porosity"), BONDS], "--rock", rock)
