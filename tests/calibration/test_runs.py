@@ -8,6 +8,7 @@ from calibration.benchmarks import loading_speed, particle_size
 from calibration.campaigns import sharp_and_worn, tip_temperature, uniaxial, wear
 from calibration.campaigns.runs import RunFailed, Runs, finished
 from calibration.validation import __main__ as validation
+from rockwear.run.checkpoint import digest
 
 from tests.running import ROOT, run_script
 
@@ -45,6 +46,18 @@ def test_a_finished_run_is_kept_only_for_the_same_values(tmp_path):
     (tmp_path / "summary.json").write_text(json.dumps(stored), encoding="utf-8")
     assert finished(tmp_path, {"kn": "2e10", "heat": "false", "test": "tension"})
     assert not finished(tmp_path, {"kn": 1e10}) and not finished(tmp_path, {"kt": 1e10})
+
+
+def test_a_finished_run_is_kept_only_for_the_same_files(tmp_path):
+    outline = tmp_path / "tooth.csv"
+    outline.write_text("0,0", encoding="utf-8")
+    given = {"rock": "m_sandstone", "outline": str(outline)}
+    files = {"rock": digest(ROOT / "rockwear/rocks/m_sandstone.json"), "outline": digest(outline)}
+    (tmp_path / "summary.json").write_text(json.dumps({"exit_code": 0, "files": files, "parameters": given}),
+                                           encoding="utf-8")
+    assert finished(tmp_path, given)
+    outline.write_text("0,1", encoding="utf-8")
+    assert not finished(tmp_path, given)
 
 
 def test_a_run_that_fails_says_so(tmp_path):
