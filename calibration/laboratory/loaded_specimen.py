@@ -216,6 +216,10 @@ class SpecimenTest(Scene):
 
     # ---- what is measured
 
+    def platen_travel(self):
+        """m by which the platens have approached or parted."""
+        return 2 * self.v.speed * self.time
+
     def displacements(self):
         """(n, 2) m since the specimen was bonded."""
         return access.rock_positions(self.rock) - self.rock.positions
@@ -244,7 +248,7 @@ class SpecimenOutput(Output):
         pull, difference = self.scene.platens.take_mean()
         self.scene.stress = self.scene.sign * pull / self.scene.section
         axial, lateral = self.scene.strains()
-        travel = 2 * self.scene.v.speed * self.scene.time / self.scene.rock.width
+        travel = self.scene.platen_travel() / self.scene.rock.width
         return {"time": (self.scene.time, "s"), "stage": (self.scene.stage, "-"), "stress": (self.scene.stress, "Pa"),
                 "unbalanced_stress": (difference / self.scene.section, "Pa"), "axial_strain": (axial, "-"),
                 "lateral_strain": (lateral, "-"), "platen_strain": (travel, "-"),
