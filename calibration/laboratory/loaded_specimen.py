@@ -133,7 +133,7 @@ class SpecimenTest(Scene):
         return ()
 
     def works(self):
-        """{name: J per metre} that has been done on the specimen."""
+        """{name: J per metre} done on the specimen, the platens' first."""
         return {"platen_work": self.platens.work}
 
     def strength_measure(self):
@@ -277,7 +277,7 @@ class SpecimenOutput(Output):
         """The energy balance, J per metre of thickness: the work on the specimen, where it went, and what the balance
         misses."""
         source, *others = works = self.scene.works()
-        balance = {source: works[source], **{name: -works[name] for name in others}}
+        balance = {source: works[source], **{f"against_{name}": -works[name] for name in others}}
         balance.update({name: now - self.scene.base[name] for name, now in self.scene.stored_energy().items()})
         balance.update(rock_friction=self.scene.rock_friction.total, bond_breaking=self.scene.bonds.energy_released,
                        numerical_damping=self._damped())

@@ -5,18 +5,17 @@ constant speed while the membrane keeps the pressure.
 """
 import math
 
-import numpy as np
 from yade import utils
 
 from calibration.laboratory.loaded_specimen import SpecimenOutput, SpecimenTest, groups, measured
 from rockwear.engines.confinement import Membrane, PressedEnds
 from rockwear.kernels.checks import require
-from rockwear.kernels.parameter import Parameter, number
+from rockwear.kernels.parameter import Parameter, integer, number
 
 GROUPS = groups(
     Parameter("confinement", 10e6, "Pa", number(0, 1e9), "pressure on the sides, and first on the ends too",
               "[Bahaaddini 2018]: 0 to 10 MPa"),
-    Parameter("membrane_interval", 100, "steps", number(1, 1e5), "between searches for the discs at the sides",
+    Parameter("membrane_interval", 100, "steps", integer(1), "between searches for the discs at the sides",
               "calibration/results/laboratory.md"),
     drop=0.7)
 
@@ -43,7 +42,8 @@ class TriaxialOutput(SpecimenOutput):
         axial, lateral, stress, held = (
             columns[name][rows] for name in ("axial_strain", "lateral_strain", "stress", "lateral_stress"))
         confinement = self.scene.v.confinement
-        found = measured(stress=stress - confinement, axial_strain=axial - axial[0], lateral_strain=lateral - lateral[0])
+        found = measured(stress=stress - confinement, axial_strain=axial - axial[0],
+                         lateral_strain=lateral - lateral[0])
         found["peak_stress"] = found["peak_stress"][0] + confinement, "Pa"
         return {**found, "residual_stress": (float(stress[-max(1, len(stress) // 20):].mean()), "Pa"),
                 "confinement_held": (float(held.mean()), "Pa"), "confinement_scatter": (float(held.std()), "Pa")}
@@ -101,7 +101,8 @@ class TriaxialTest(SpecimenTest):
         self.membrane = self.pressed = None
         if not self.v.confinement:
             return ()
-        self.membrane = Membrane(rock=self.rock, pressure=self.pressure, interval=int(self.v.membrane_interval))
+        self.membrane = Membrane(rock=self.rock, ends=(int(self.left[0]), int(self.right[0])), pressure=self.pressure,
+                                 interval=self.v.membrane_interval)
         self.pressed = PressedEnds(left=self.left.tolist(), right=self.right.tolist(), masses=self.rock.masses,
                                    force=lambda: self.pressure() * self.section)
         return self.membrane, self.pressed
@@ -130,7 +131,7 @@ class TriaxialTest(SpecimenTest):
     def works(self):
         if not self.membrane:
             return super().works()
-        return {**super().works(), "membrane_work": self.membrane.work, "pressing_work": self.pressed.work}
+        return {**super().works(), "membrane": self.membrane.work, "pressed_ends": self.pressed.work}
 
     def restore(self, state, directory, folder):
         super().restore(state, directory, folder)

@@ -12,20 +12,22 @@ from rockwear.kernels.membrane import pressure_forces, upper_chain
 class Membrane(Engine):
     """A pressure on both sides of a specimen along x, by forces on the discs that a membrane there touches.
 
-    rock: the specimen, bodies 0..n-1; pressure: a function giving Pa; interval: steps between searches for the discs.
-    Between searches the forces stay as they are, so that their work is force times displacement. The pressure is a
-    force per length of the membrane, which follows the specimen: it stays the same however the sides deform.
+    rock: the specimen, bodies 0..n-1; ends: (one disc of the left platen, one of the right one), whose motion is that
+    of the ends x = 0 and x = width; pressure: a function giving Pa; interval: steps between searches for the discs.
+
+    Both sides carry the pressure from end to end, so that they are in equilibrium with each other. The pressure is a
+    force per length of the membrane, which follows the specimen: it stays the same however the sides deform. Between
+    searches the forces stay as they are, so that their work is force times displacement.
     """
 
     name = "membrane"
     phase = FORCES
 
-    def __init__(self, *, rock, pressure, interval=100, period=1):
+    def __init__(self, *, rock, ends, pressure, interval=100, period=1):
         super().__init__(period=period)
-        self.rock, self.pressure, self.interval = rock, pressure, interval
+        self.rock, self.ends, self.pressure, self.interval = rock, list(ends), pressure, interval
         self.bodies, self.loads, self.places = np.zeros(0, int), np.zeros((0, 2)), np.zeros((0, 2))
-        self.closed, self.next = 0.0, 0
-        self.extent = np.zeros(2)
+        self.closed, self.next, self.extent = 0.0, 0, rock.width
         self._list()
 
     def _list(self):
@@ -40,14 +42,16 @@ class Membrane(Engine):
     def _place(self):
         positions, radii = rock_positions(self.rock), self.rock.radii
         self.closed += self._work_since(positions[self.bodies])
-        mirrored = positions * (1.0, -1.0)
+        moved = positions[self.ends, 0] - self.rock.positions[self.ends, 0]
+        left, right = (0.0, self.rock.width) + moved
+        self.extent = float(right - left)
         bodies, loads = [], []
-        for side, sign in ((positions, 1.0), (mirrored, -1.0)):
+        for sign in (1.0, -1.0):
+            side = positions * (1.0, sign)
             chain = upper_chain(side, radii, ball=radii.max())
-            forces = pressure_forces(side[chain], self.pressure(), margin=radii[chain[[0, -1]]])
+            forces = pressure_forces(side[chain], self.pressure(), begin=left, end=right)
             bodies.append(chain)
             loads.append(forces * (1.0, sign))
-        self.extent = np.array([np.ptp(positions[chain, 0]) + radii[chain[[0, -1]]].sum() for chain in bodies])
         self.bodies, self.loads = np.concatenate(bodies), np.concatenate(loads)
         self.places = positions[self.bodies]
         self.next = O.iter + self.interval
@@ -64,21 +68,20 @@ class Membrane(Engine):
     def across(self, upper):
         """Pa: mean pressure across the line between the discs `upper` (n,) bool and the others, in this step.
 
-        It is what the others exert on them, over the length of the upper membrane, and shows what the specimen itself
-        feels of the pressure, inertia included.
+        It is what the others exert on them, over the length of the specimen, and shows what the specimen itself feels
+        of the pressure, inertia included.
         """
         force = O.forces.f
         total = math.fsum(force(i)[1] for i in np.flatnonzero(upper).tolist())
-        return (total - float(self.loads[upper[self.bodies], 1].sum())) / self.extent[0] if self.extent[0] else 0.0
+        return (total - float(self.loads[upper[self.bodies], 1].sum())) / self.extent
 
     def state(self):
         return {"bodies": self.bodies.copy(), "loads": self.loads.copy(), "places": self.places.copy(),
-                "closed": self.closed, "next": self.next, "extent": self.extent.copy()}
+                "closed": self.closed, "next": self.next, "extent": self.extent}
 
     def restore(self, state):
-        self.bodies, self.loads, self.places, self.extent = (
-            state[name].copy() for name in ("bodies", "loads", "places", "extent"))
-        self.closed, self.next = float(state["closed"]), int(state["next"])
+        self.bodies, self.loads, self.places = (state[name].copy() for name in ("bodies", "loads", "places"))
+        self.closed, self.next, self.extent = float(state["closed"]), int(state["next"]), float(state["extent"])
         self._list()
 
 

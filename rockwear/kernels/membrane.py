@@ -34,18 +34,18 @@ def upper_chain(positions, radii, *, ball):
     return touched[np.lexsort((touched, x[touched]))]
 
 
-def pressure_forces(chain, pressure, *, margin):
+def pressure_forces(chain, pressure, *, begin, end):
     """(k, 2) N on discs at `chain` (k, 2) m, in order of x, under a pressure (Pa) from above.
 
-    Each piece of the chain carries pressure times length at right angles, half of it to each of its discs; `margin`
-    (2,) m is what lies horizontally beyond the first and the last disc. The sum along y is minus the pressure times
-    the whole extent in x.
+    Each piece of the chain carries pressure times length at right angles, half of it to each of its discs. The first
+    and the last disc carry what lies between them and the ends of the membrane at x = `begin` and `end` (m) too, so
+    that the sum along y is minus the pressure times (end - begin).
     """
     piece = np.diff(chain, axis=0)
     half = 0.5 * pressure * np.column_stack([piece[:, 1], -piece[:, 0]])
     forces = np.zeros((len(chain), 2))
     forces[:-1] += half
     forces[1:] += half
-    forces[0, 1] -= pressure * margin[0]
-    forces[-1, 1] -= pressure * margin[1]
+    forces[0, 1] -= pressure * (chain[0, 0] - begin)
+    forces[-1, 1] -= pressure * (end - chain[-1, 0])
     return forces
