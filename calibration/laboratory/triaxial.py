@@ -104,7 +104,7 @@ class TriaxialTest(SpecimenTest):
         self.membrane = Membrane(rock=self.rock, ends=(int(self.left[0]), int(self.right[0])), pressure=self.pressure,
                                  interval=self.v.membrane_interval)
         self.pressed = PressedEnds(left=self.left.tolist(), right=self.right.tolist(), masses=self.rock.masses,
-                                   force=lambda: self.pressure() * self.section)
+                                   force=lambda: None if self.axial else self.pressure() * self.section)
         return self.membrane, self.pressed
 
     def _set_off(self):
@@ -122,7 +122,6 @@ class TriaxialTest(SpecimenTest):
     def end_stage(self, folder):
         super().end_stage(folder)
         if self.axial and not self.finished:
-            self.pressed.pressing = False
             before = utils.kineticEnergy()
             self._set_off()
             self.base["kinetic"] += utils.kineticEnergy() - before

@@ -89,7 +89,7 @@ class PressedEnds(Engine):
     """Two sets of discs, each of which moves along x as one rigid body under a force, until it is released.
 
     left, right: ids, their motion along x prescribed; masses: (n,) kg of all bodies; force: a function giving the N
-    with which each is pressed on the specimen.
+    with which each is pressed on the specimen, None once they are released.
     """
 
     name = "pressed_ends"
@@ -100,14 +100,14 @@ class PressedEnds(Engine):
         self.ends = [(ids, 1.0 / float(masses[ids].sum()), side) for ids, side in ((left, 1.0), (right, -1.0))]
         self.force = force
         self.velocities = [0.0, 0.0]
-        self.work, self.pressing = 0.0, True
+        self.work = 0.0
 
     def act(self):
-        if not self.pressing:
+        elapsed, pressing, force = self.elapsed(), self.force(), O.forces.f
+        if pressing is None:
             return
-        elapsed, force = self.elapsed(), O.forces.f
         for end, (ids, per_mass, side) in enumerate(self.ends):
-            load, before = side * self.force(), self.velocities[end]
+            load, before = side * pressing, self.velocities[end]
             total = math.fsum(force(i)[0] for i in ids) + load
             after = self.velocities[end] = before + total * per_mass * elapsed
             self.work += 0.5 * load * (before + after) * elapsed
@@ -116,8 +116,8 @@ class PressedEnds(Engine):
                 state.vel = (after, state.vel[1], 0.0)
 
     def state(self):
-        return {"velocities": np.array(self.velocities), "work": self.work, "pressing": self.pressing}
+        return {"velocities": np.array(self.velocities), "work": self.work}
 
     def restore(self, state):
         self.velocities = state["velocities"].tolist()
-        self.work, self.pressing = float(state["work"]), bool(state["pressing"])
+        self.work = float(state["work"])

@@ -22,6 +22,7 @@ from rockwear.engines import access, base
 from rockwear.engines.base import Engine
 from rockwear.engines.bonds import Bonds
 from rockwear.engines.conduction import Conduction
+from rockwear.engines.confinement import Membrane, PressedEnds
 from rockwear.engines.damping import BackgroundDamping
 from rockwear.engines.dead_load import DeadLoad
 from rockwear.engines.energy_guard import EnergyGuard
@@ -317,6 +318,22 @@ class Tension(World):
             O.bodies[body].state.vel = (20.0 * sign, 0, 0)
 
 
+class Confined(Tension):
+    """The same specimen under pressure on its sides and, at first, on its ends."""
+
+    pressing = 1e5
+
+    def _engines(self):
+        membrane = Membrane(rock=self.rock, ends=(self.left[0], self.right[0]), pressure=lambda: 1e6 + 1e12 * self.time,
+                            interval=25)
+        ends = PressedEnds(left=self.left, right=self.right, masses=self.rock.masses, force=lambda: self.pressing)
+        return [self.bonds, membrane, ends, self.rock_friction]
+
+    def _begin(self):
+        for body in self.left + self.right:
+            O.bodies[body].state.blockedDOFs = "xzXY"
+
+
 class NowhereLinear(Tension):
     """The same with a law whose bonds all have their force from Python."""
 
@@ -373,7 +390,7 @@ class HeatAlone(World):
         """Nothing of YADE's to prepare."""
 
 
-WORLDS = (ParticleCut, FacetCut, Sliding, Tension, NowhereLinear, Spinning, HeatAlone)
+WORLDS = (ParticleCut, FacetCut, Sliding, Tension, Confined, NowhereLinear, Spinning, HeatAlone)
 
 
 def concrete_engines():
