@@ -5,6 +5,7 @@ constant speed while the membrane keeps the pressure.
 """
 import math
 
+import numpy as np
 from yade import utils
 
 from calibration.laboratory.loaded_specimen import SpecimenOutput, SpecimenTest, groups, measured
@@ -36,14 +37,14 @@ class TriaxialOutput(SpecimenOutput):
         return {**super().log(), "lateral_stress": (pressure, "Pa")}
 
     def found(self, columns):
-        rows = columns["stage"] == len(self.scene.stages) - 1
-        if rows.sum() < 2:
+        first = int(np.searchsorted(columns["stage"], len(self.scene.stages) - 1))
+        stress, held = (columns[name][first:] for name in ("stress", "lateral_stress"))
+        if len(stress) < 2:
             return {}
-        axial, lateral, stress, held = (
-            columns[name][rows] for name in ("axial_strain", "lateral_strain", "stress", "lateral_stress"))
         confinement = self.scene.v.confinement
-        found = measured(stress=stress - confinement, axial_strain=axial - axial[0],
-                         lateral_strain=lateral - lateral[0])
+        strains = {name: columns[name][first:] - (columns[name][first - 1] if first else 0.0)
+                   for name in ("axial_strain", "lateral_strain")}
+        found = measured(stress=stress - confinement, **strains)
         found["peak_stress"] = found["peak_stress"][0] + confinement, "Pa"
         return {**found, "residual_stress": (float(stress[-max(1, len(stress) // 20):].mean()), "Pa"),
                 "confinement_held": (float(held.mean()), "Pa"), "confinement_scatter": (float(held.std()), "Pa")}
