@@ -11,7 +11,8 @@ def upper_chain(positions, radii, *, ball):
     """Indices, in order of x, of the discs that a ball of radius `ball` (m) touches when it rolls over them from above.
 
     positions: (n, 2) m; radii: (n,) m. The centre of the ball runs along the upper envelope of the discs enlarged by
-    its radius, so that it bridges gaps that are narrower than itself. It enters no gap by more than 2 (largest radius + ball). Raises ParameterError.
+    its radius, so that it bridges gaps that are narrower than itself. It enters no gap by more than 2 (largest radius +
+    ball). Raises ParameterError.
     """
     positive("ball", ball, "m")
     x, y = positions.T
