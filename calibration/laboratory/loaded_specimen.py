@@ -11,7 +11,6 @@ import numpy as np
 from yade import O
 
 from rockwear.engines import access
-from rockwear.engines.bonds import Bonds
 from rockwear.engines.energy_guard import EnergyGuard
 from rockwear.engines.failure import Failure
 from rockwear.engines.platens import Platens
@@ -19,13 +18,12 @@ from rockwear.engines.recorder import Recorder
 from rockwear.engines.rock_friction import RockFriction
 from rockwear.engines.separation import Separation
 from rockwear.engines.velocity_increment import VelocityIncrement
-from rockwear.kernels.bond_laws import BOND_LAWS
 from rockwear.kernels.checks import require
 from rockwear.kernels.parameter import Group, Parameter, above_zero, choice, number, speed
 from rockwear.kernels.stability import critical_time_step
 from rockwear.model.rock import Specimen
 from rockwear.run import vtk
-from rockwear.scenes import parameters, yade_scene
+from rockwear.scenes import parameters, parts, yade_scene
 from rockwear.scenes.balances import with_residual
 from rockwear.scenes.output import Output, crack_table
 from rockwear.scenes.scene import Scene
@@ -75,8 +73,8 @@ class SpecimenTest(Scene):
         v = self.v = SimpleNamespace(**values)
         require(v.radius_max >= v.radius_min, "radius_max", v.radius_max, f"at least radius_min = {v.radius_min:g}",
                 "m")
-        self.law = BOND_LAWS[v.bond_law].from_values(values)
-        self.rock = rock = self._specimen()
+        self.law = parts.bond_law(v)
+        self.rock = rock = parts.bond(self._specimen(), v)
         self.left, self.right = self._ends()
         self.prescribed = np.zeros(rock.count, bool)
         self.prescribed[self.left] = self.prescribed[self.right] = True
@@ -155,7 +153,7 @@ class SpecimenTest(Scene):
         self.slopes = np.linalg.pinv(points)[1:]
 
     def _choose_time_step(self):
-        v, rock, (kn, kt) = self.v, self.rock, self.law.stiffest()
+        v, rock, (kn, kt) = self.v, self.rock, self.rock.stiffness()
         self.critical_step = critical_time_step(
             positions=rock.positions, radii=rock.radii, masses=rock.masses, inertias=rock.inertias, bonds=rock.pairs,
             kn=kn, kt=kt)
@@ -167,7 +165,7 @@ class SpecimenTest(Scene):
         """Fill YADE's scene: bodies, bonds, engines; the specimen already in its mean motion."""
         O.reset()
         v, rock = self.v, self.rock
-        yade_scene.put_rock_materials(mu=self.law.mu)
+        yade_scene.put_rock_materials(mu=self.law.mu, yade_law=self.law.yade_law)
         yade_scene.put_rock(rock)
         yade_scene.put_loop(rock=self.law, damping=v.damping)
         O.trackEnergy = True
@@ -200,8 +198,7 @@ class SpecimenTest(Scene):
     def _make_engines(self):
         v, rock = self.v, self.rock
         row = max(1, round(v.record_strain * rock.width / (2 * v.speed * self.time_step)))
-        self.bonds = Bonds(pairs=rock.pairs, law=self.law, strength_factor=rock.strength_factor,
-                           clock=lambda: self.time)
+        self.bonds = yade_scene.bonds_engine(rock, self.law, lambda: self.time)
         inertias = np.full(rock.count, np.inf) if v.rotation == "blocked" else rock.inertias
         motion = VelocityIncrement(masses=rock.masses, inertias=inertias, radii=rock.radii, fixed=self.prescribed)
         self.rock_friction = RockFriction(bonds=self.bonds, motion=motion, period=v.rock_sampling_period)

@@ -2,18 +2,13 @@
 import math
 import numpy as np
 
-from collections import namedtuple
-
 from yade import Ig2_Sphere_Sphere_ScGeom, Law2_ScGeom_JCFpmPhys_JointedCohesiveFrictionalPM, O
 
 from rockwear.engines.access import body_erased, geometry_functor, law_functor
-from rockwear.engines.base import FORCES, Engine
+from rockwear.engines.bond_log import BROKEN, INTACT, SEPARATED, BondLog, Crack
 from rockwear.engines.bonding_normals import BondingNormals
 from rockwear.engines.softening import SofteningBond, from_rows, set_elastic_domain, to_rows
 
-
-INTACT, BROKEN, SEPARATED = 0, 1, 2
-"""Status of a bond. SEPARATED: broken and erased after its particles had parted; a later contact is a new one."""
 
 LARGE_SHEAR = 0.02
 """Shear displacement over r_i + r_j from which, in space, its length does not follow from the normals."""
@@ -25,9 +20,6 @@ much as so many steps in Python, so that no path costs much more than twice the 
 ROLLING_PERIOD = 200
 """Steps between checks for rolled bonds. In these steps a chip of two discs, joined by one bond, may roll by less than
 two radians."""
-
-Crack = namedtuple("Crack", "time x y z normal_x normal_y normal_z mode energy body_1 body_2")
-"""One broken bond: s, m, unit normal, 1 tension or 2 shear, J dissipated in all, ids of the particles."""
 
 
 def _strain_energy(phys):
@@ -44,11 +36,8 @@ def _with_stored_length(ut, softening):
     return before.normalized() * length + increment
 
 
-class Bonds(Engine):
-    """All bonds of the rock under one law [Rojek 2003, ch. 4], with a crack log.
-
-    pairs: (m, 2) body ids; law: of rockwear.kernels.bond_laws; strength_factor: (m,), a bond obeys law.scaled(factor);
-    clock: a function giving the time (s) for the crack log.
+class Bonds(BondLog):
+    """All bonds of the rock under one law [Rojek 2003, ch. 4].
 
     YADE's JCFpm law gives Fn = kn un, Ft = kt ut until Fn > FnMax or |Ft| > FsMax + slope Fn, which are set to the
     elastic domain of the bond law. Two counters of the C++ law tell that a bond has left its domain, and a sum tells
@@ -70,24 +59,17 @@ class Bonds(Engine):
     where shear follows the points of contact (avoidGranularRatcheting off), which normals do not represent.
     """
 
-    name = "bonds"
-    phase = FORCES
-
-    def __init__(self, *, pairs, law, strength_factor=None, clock, period=1):
-        super().__init__(period=period)
-        self.pairs = np.asarray(pairs)
+    def __init__(self, **common):
+        super().__init__(**common)
         self.bodies = np.unique(self.pairs).tolist()
-        self.law = law
-        factors = np.ones(len(self.pairs)) if strength_factor is None else np.asarray(strength_factor, float)
-        scaled = {factor: law.scaled(factor) for factor in np.unique(factors).tolist()}
-        self.laws = [scaled[factor] for factor in factors.tolist()]
-        self.has_domain = law.elastic_domain(law.initial_state()) is not None
-        self.status = np.full(len(self.pairs), INTACT, np.int8)
+        self.has_domain = self.law.elastic_domain(self.law.initial_state()) is not None
         self.normals = BondingNormals(len(self.pairs))
-        self.cracks = []
         self.softening_bonds, self.returned = {}, {}
-        self.energy_released = 0.0
-        self.clock = clock
+
+    @staticmethod
+    def reference_overlap(phys):
+        """penetrationDepth (m) at which the bond was made."""
+        return phys.initD
 
     def bond(self):
         """Give every new JCFpm interaction its stiffness and elastic domain (once, after the bonding step)."""
@@ -279,13 +261,6 @@ class Bonds(Engine):
         """YADE's phys of the intact bond n."""
         return self.softening_bonds[n].phys if n in self.softening_bonds else self.elastic[n][1]
 
-    def in_contact(self):
-        """(m,) bool: bonds that are intact, or broken and under compression; these conduct heat."""
-        touching = self.status == INTACT
-        for n, (_, phys) in self.broken.items():
-            touching[n] = phys.normalForce.squaredNorm() > 0
-        return touching
-
     def softening(self):
         """(m,) from 0, a bond in its initial state, to 1, a broken one."""
         found = np.where(self.status == INTACT, 0.0, 1.0)
@@ -301,19 +276,11 @@ class Bonds(Engine):
 
     def state(self):
         scalars = self.law.initial_state().scalars
-        return {"status": self.status.copy(), "normals": self.normals.normals.copy(),
-                "energy_released": self.energy_released,
-                "cracks": np.array(self.cracks, float).reshape(-1, len(Crack._fields)),
+        return {**super().state(), "normals": self.normals.normals.copy(),
                 "softening_bonds": to_rows(self.softening_bonds, scalars), "returned": to_rows(self.returned, scalars)}
 
     def restore(self, state):
-        self.status, self.normals.normals = state["status"].copy(), state["normals"].copy()
-        self.cracks = [Crack(*row[:7], int(row[7]), row[8], int(row[9]), int(row[10]))
-                       for row in state["cracks"].tolist()]
-        self.energy_released = float(state["energy_released"])
+        super().restore(state)
+        self.normals.normals = state["normals"].copy()
         self.softening_bonds = from_rows(state["softening_bonds"], self.laws)
         self.returned = from_rows(state["returned"], self.laws)
-
-    def log(self):
-        modes = [crack.mode for crack in self.cracks]
-        return {"tensile_cracks": (modes.count(1), "-"), "shear_cracks": (modes.count(2), "-")}

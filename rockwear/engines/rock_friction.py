@@ -1,7 +1,7 @@
 """Friction between rock particles."""
 import numpy as np
 
-from yade import InsertionSortCollider, JCFpmPhys, O
+from yade import CpmPhys, InsertionSortCollider, JCFpmPhys, O
 
 from rockwear.engines.access import SLIDING, body_erased, contact_energy, yade_engine, yade_friction_law
 from rockwear.engines.base import FORCES, Engine
@@ -30,7 +30,7 @@ class RockContacts(Engine):
         self.collider = yade_engine(InsertionSortCollider)
         self.seen = self.collider.numAction, self.bonds.separations
         found = [i for i in O.interactions.all() if max(i.id1, i.id2) < self.particles
-                 and not isinstance(i.phys, JCFpmPhys)]
+                 and not isinstance(i.phys, (JCFpmPhys, CpmPhys))]
         # A loaded scene has them in another order.
         self.possible = sorted(found, key=lambda i: (i.id1, i.id2))
 

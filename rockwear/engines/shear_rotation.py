@@ -4,7 +4,7 @@ from yade import O, Subdomain, Vector3
 
 from rockwear.kernels.shear_rotation import shear_to_start_from, turning_rates
 from rockwear.engines.base import START, Engine
-from rockwear.engines.bonds import INTACT
+from rockwear.engines.bond_log import INTACT
 
 FAST = 0.01
 """Angle (rad) a step from which a bond counts as rotating fast. In steps of 30 us slower chips gain less than 0.2 of

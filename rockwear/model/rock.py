@@ -7,15 +7,21 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
 from rockwear.kernels import packing
+from rockwear.kernels.bond_laws import ElasticBrittle
 from rockwear.kernels import polygon as outline
 from rockwear.kernels.checks import ParameterError, not_negative, positive, require, within
 from rockwear.kernels.conduction import calibrated_conductance, paths
+from rockwear.kernels.grains import grains
 from rockwear.kernels.voronoi import cells
 from rockwear.model.cache import cached
 
 
 TILE = 8000
 """Particles above which a specimen is put together from periodic tiles."""
+UNBREAKABLE = 1e30
+"""Strength (N) of the bonds within a grain."""
+SCATTER_LIMITS = 0.05, 5.0
+"""Least and largest strength over the mean one where strengths scatter."""
 
 
 def graded_radius(*, top, fine_depth, grading_factor, over):
@@ -46,17 +52,19 @@ class RockAssembly:
     """Particles of thickness 1 m in the plane, or spheres in space, in a box, and the pairs of them that are bonded.
 
     positions: (n, 2 or 3) m; radii: (n,) m; width, height (and depth): m of the box; density: kg/m3 of the bulk; pairs:
-    (m, 2), i < j; strength_factor: (m,), a bond is so many times as strong as the bond law says. Particles carry the
+    (m, 2), i < j; scale: (n,), by how much the grading of the rock has enlarged each particle. Particles carry the
     mass of the pores, bulk density over solid fraction [Rojek 2014, eq. 63]; porosity: of the packing, where it does
-    not fill the box. `fixed` (n,) bool: particles that do not move.
+    not fill the box. `fixed` (n,) bool: particles that do not move. `bond` gives the bonds their laws.
     """
 
-    def __init__(self, *, positions, radii, width, height, density,
-                 pairs, strength_factor=None, depth=None, porosity=None):
+    laws = grains = None
+    """(m,) law of each bond; (n,) number of the grain of each particle, where the rock has grains."""
+
+    def __init__(self, *, positions, radii, width, height, density, pairs, scale=None, depth=None, porosity=None):
         self.positions, self.radii, self.density = np.asarray(positions, float), radii, density
         self.width, self.height, self.depth, self.count = width, height, depth, len(radii)
         self.pairs = pairs
-        self.strength_factor = np.ones(len(pairs)) if strength_factor is None else strength_factor
+        self.scale = np.ones(len(radii)) if scale is None else scale
         if depth is None:
             self.porosity = 1 - float(np.sum(np.pi * radii**2)) / (width * height) if porosity is None else porosity
             self.masses = density / (1 - self.porosity) * np.pi * radii**2
@@ -72,6 +80,68 @@ class RockAssembly:
     def size(self):
         """The box, m: (width, height), or with its depth."""
         return (self.width, self.height) if self.depth is None else (self.width, self.height, self.depth)
+
+    @property
+    def volume(self):
+        """m2 or m3 that the particles fill with their pores."""
+        return float(packing.volumes(self.radii, self.positions.shape[1]).sum()) / (1 - self.porosity)
+
+    @property
+    def strength_factor(self):
+        """(m,) A bond between enlarged particles is so many times as strong: the rock's strength stays uniform."""
+        return self.scale[self.pairs].mean(axis=1)
+
+    @property
+    def bond_areas(self):
+        """(m,) m2 of crack that a bond stands for, in the plane per metre of thickness.
+
+        A straight line meets (2/pi) sum d / A bonds per length, a plane sum d / (2 V) per area, d being the lengths of
+        the bonds in an area A or a volume V in which their directions are evenly spread; in graded rock locally so.
+        """
+        i, j = self.pairs.T
+        lengths = np.linalg.norm(self.positions[i] - self.positions[j], axis=1)
+        power = self.positions.shape[1] - 1
+        shares = packing.volumes(self.radii, power + 1) / (1 - self.porosity) / self.scale**power
+        mean = (0.5 * math.pi if power == 1 else 2.0) * float(shares.sum() / lengths.sum())
+        return mean * self.strength_factor**power
+
+    def bond(self, law, *, grain_edge=0.0, within_grains=None, weibull_modulus=0.0, seed=0):
+        """Give every bond its law, `laws` (m,), as the rock's law asks for at its place.
+
+        law: of kernels.bond_laws; grain_edge: m, mean edge of grains, 0 for none; within_grains: (kn, kt), N/m, of the
+        bonds within a grain, which do not break; weibull_modulus: of the scatter of strengths about their mean, 0 for
+        none; seed: of grains and scatter. Raises ParameterError.
+        """
+        sizes = self.bond_areas if law.by_area else self.strength_factor
+        if weibull_modulus:
+            drawn = np.random.default_rng([seed, len(self.pairs)]).weibull(weibull_modulus, len(self.pairs))
+            sizes = sizes * np.clip(drawn / math.gamma(1 + 1 / weibull_modulus), *SCATTER_LIMITS)
+        within = np.zeros(len(self.pairs), bool)
+        if grain_edge:
+            self.grains = grains(self.positions, volume=self.volume, edge=grain_edge, seed=seed)
+            within = self.grains[self.pairs[:, 0]] == self.grains[self.pairs[:, 1]]
+            require(law.linear, "grain_edge", grain_edge, f"0 with the law {law.name}, which is linear nowhere", "m")
+            kn, kt = within_grains or (law.kn, law.kt)
+            inner = ElasticBrittle(kn=kn, kt=kt, Rn=UNBREAKABLE, Rt=UNBREAKABLE, mu=law.mu)
+        scaled = {size: law.scaled(size) for size in np.unique(sizes[~within]).tolist()}
+        self.laws = [inner if inside else scaled[size] for size, inside in zip(sizes.tolist(), within)]
+        if law.yade_law == "Cpm":
+            self._clear_overlaps()
+
+    def _clear_overlaps(self):
+        """Reduce radii until no bonded particles overlap; masses stay. YADE's concrete model erases a bond that breaks,
+        and the contact that follows would press with the whole overlap."""
+        i, j = self.pairs.T
+        overlap = self.radii[i] + self.radii[j] - np.linalg.norm(self.positions[i] - self.positions[j], axis=1)
+        largest = np.zeros(self.count)
+        np.maximum.at(largest, i, overlap)
+        np.maximum.at(largest, j, overlap)
+        self.radii = self.radii - 0.5 * largest
+
+    def stiffness(self):
+        """(kn, kt), (m,) N/m: upper bounds of the stiffness of each bond, for the critical time step."""
+        kinds = {law: law.stiffest() for law in set(self.laws)}
+        return np.array([kinds[law] for law in self.laws]).reshape(-1, 2).T
 
     def fix(self, *faces, below=math.inf, within=1.05):
         """Fix the particles with centres `within` so many radii of these faces ("bottom", "left", "right") of the box,
@@ -149,9 +219,9 @@ class Specimen(RockAssembly):
         stored = cached(make, **key)
         pairs = packing.contacts(stored["positions"], stored["radii"], bonding_gap)
         require(len(pairs) > len(stored["radii"]), "bonding_gap", bonding_gap, "large enough to bond the packing", "m")
-        self.scale, self.radius_max = stored["scale"], radius_max
+        self.radius_max = radius_max
         super().__init__(positions=stored["positions"], radii=stored["radii"], width=width, height=height,
-                         density=density, pairs=pairs, strength_factor=self.scale[pairs].mean(axis=1))
+                         density=density, pairs=pairs, scale=stored["scale"])
 
 
 class CutOut(RockAssembly):
@@ -168,7 +238,7 @@ class CutOut(RockAssembly):
         pairs = packing.contacts(positions, radii, bonding_gap)
         super().__init__(positions=positions, radii=radii, width=specimen.width, height=specimen.height,
                          density=specimen.density, pairs=pairs, porosity=specimen.porosity,
-                         strength_factor=specimen.scale[kept][pairs].mean(axis=1))
+                         scale=specimen.scale[kept])
 
     @cached_property
     def cells(self):

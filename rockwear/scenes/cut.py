@@ -4,7 +4,6 @@ from yade import O
 
 from rockwear.engines import access
 from rockwear.engines.base import RunEnded
-from rockwear.engines.bonds import Bonds
 from rockwear.engines.damping import BackgroundDamping
 from rockwear.engines.energy_guard import EnergyGuard
 from rockwear.engines.path_follower import PathFollower
@@ -48,9 +47,11 @@ class Cut(Scene):
         self.in_plane = self.units is PLANE
         # YADE's shear by full radii gains energy where spheres overlap by a tenth of their size.
         self.ratcheting_free = self.in_plane
+        if rock.laws is None:
+            rock.bond(bond_law)
         programme.attach(self)
         if self.in_plane:
-            self.bonded_step, self.contact_step = plane_steps(rock, bond_law, tool.contact_law)
+            self.bonded_step, self.contact_step = plane_steps(rock, tool.contact_law)
         else:
             self.bonded_step, self.contact_step = space_steps(rock, bond_law, tool.contact_law)
         self.critical_step = min(self.bonded_step, self.contact_step)
@@ -70,7 +71,8 @@ class Cut(Scene):
     def build(self):
         O.reset()
         contact = self.tool.contact_law
-        yade_scene.put_rock_materials(mu=self.bond_law.mu, loose=self.tool.loose_material)
+        yade_scene.put_rock_materials(mu=self.bond_law.mu, loose=self.tool.loose_material,
+                                      yade_law=self.bond_law.yade_law)
         yade_scene.put_tool_material(mu=contact.mu, contact_damping=contact.damping)
         yade_scene.put_rock(self.rock)
         self.tool.put_loop(rock=self.bond_law, tool=contact, ratcheting_free=self.ratcheting_free)
@@ -89,8 +91,7 @@ class Cut(Scene):
 
     def _make_engines(self):
         rock, tool, accuracy = self.rock, self.tool, self.accuracy
-        self.bonds = Bonds(pairs=rock.pairs, law=self.bond_law, strength_factor=rock.strength_factor,
-                           clock=lambda: self.time)
+        self.bonds = yade_scene.bonds_engine(rock, self.bond_law, lambda: self.time)
         increment = VelocityIncrement(masses=rock.masses, inertias=rock.inertias, radii=rock.radii, fixed=rock.fixed,
                                       gravity=self.gravity.vector if self.gravity else None)
         tool.make_engines(motion=self.programme.motion, increment=increment, wear_period=accuracy.wear_period,
@@ -100,9 +101,10 @@ class Cut(Scene):
         self.damping = self._make_damping()
         self.recorder = Recorder(self.output.history(), period=max(1, self.steps_in(accuracy.record_period)))
         self.guard = EnergyGuard(work=lambda: tool.contact.work_done, floor=self._least_energy(), period=GUARD_PERIOD)
-        curved, bonded_in_space = self.programme.motion.angular_velocity, not self.in_plane and len(rock.pairs)
+        curved = self.programme.motion.angular_velocity
+        turned_in_space = not self.in_plane and len(rock.pairs) and self.bond_law.yade_law == "JCFpm"
         self._register(
-            ShearRotation(bonds=self.bonds, radii=rock.radii) if bonded_in_space else None,
+            ShearRotation(bonds=self.bonds, radii=rock.radii) if turned_in_space else None,
             self.bonds, tool.contact, self.rock_friction, Separation(self.bonds, period=SEPARATION_PERIOD),
             PathFollower(bodies=tool.bodies, clock=self.programme.path_time, period=PATH_PERIOD) if curved else None,
             tool.wear_engine, tool.profile, self.heat, self.expansion, self.damping, self.recorder, self.guard)

@@ -46,7 +46,7 @@ def box(v):
                     density=v.rock_density)
     rock.fix("bottom")
     rock.fix("left", "right", below=v.height - 3 * v.depth_of_cut)
-    return rock
+    return parts.bond(rock, v)
 
 
 def tool(v):

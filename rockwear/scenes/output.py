@@ -1,7 +1,7 @@
 """What the folder of a run shows of a scene."""
 from abc import ABC, abstractmethod
 
-from rockwear.engines.bonds import Crack
+from rockwear.engines.bond_log import Crack
 
 
 class Output(ABC):

@@ -26,6 +26,15 @@ def bond_law(v):
     return BOND_LAWS["brittle"].from_values({**values, "Rn": v.kn, "Rt": v.kn})
 
 
+def bond(rock, v):
+    """Give the rock's bonds their laws. -> the rock."""
+    law, values = bond_law(v), vars(v)
+    if "bond_law" in values:
+        rock.bond(law, grain_edge=v.grain_edge, within_grains=(v.grain_kn or law.kn, v.grain_kt or law.kt),
+                  weibull_modulus=v.weibull_modulus, seed=v.seed)
+    return rock
+
+
 def outline(v):
     """(k, 2) m: the outline of the tool in its own frame, from a file or from the parameters of a tooth."""
     if v.outline:

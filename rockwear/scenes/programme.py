@@ -7,7 +7,7 @@ from contextlib import nullcontext
 import numpy as np
 from yade import O
 
-from rockwear.engines.bonds import Crack
+from rockwear.engines.bond_log import Crack
 from rockwear.kernels.rigid_motion import Straight
 
 

@@ -11,10 +11,9 @@ TOUCHING = 4
 """Tool particles that are taken to press one sphere at once."""
 
 
-def plane_steps(rock, bond_law, contact):
-    """(critical step of the bonded rock, of rock under the tool), s. bond_law: its stiffest springs count; contact:
-    model.contact.ContactLaw."""
-    kn, kt = bond_law.stiffest()
+def plane_steps(rock, contact):
+    """(critical step of the bonded rock, of rock under the tool), s. contact: model.contact.ContactLaw."""
+    kn, kt = rock.stiffness()
     common = dict(positions=rock.positions, radii=rock.radii, masses=rock.masses, inertias=rock.inertias,
                   bonds=rock.pairs,
                   kn=kn, kt=kt, fixed=np.flatnonzero(rock.fixed))
@@ -33,8 +32,8 @@ def plane_steps(rock, bond_law, contact):
 
 
 def space_steps(rock, bond_law, contact):
-    """The same for spheres, whose shear follows the points of contact."""
-    kn, kt = bond_law.stiffest()
+    """The same for spheres, whose shear follows the points of contact; bond_law: also of contacts that are no bonds."""
+    kn, kt = np.max([*zip(*rock.stiffness()), bond_law.stiffest()], axis=0)
     free = np.flatnonzero(~rock.fixed)
     common = dict(positions=rock.positions, radii=rock.radii, masses=rock.masses, inertias=rock.inertias,
                   bonds=rock.near(CLOSE * float(rock.radii.max())), kn=kn, kt=kt, fixed=np.flatnonzero(rock.fixed),

@@ -2,12 +2,11 @@
 from collections import namedtuple
 
 import numpy as np
-from yade import (Bo1_Sphere_Aabb, ForceResetter, Ig2_Sphere_Sphere_ScGeom, InsertionSortCollider, InteractionLoop,
-                  Ip2_JCFpmMat_JCFpmMat_JCFpmPhys, JCFpmMat, Law2_ScGeom_JCFpmPhys_JointedCohesiveFrictionalPM,
-                  NewtonIntegrator, O, Quaternion, Vector3, utils)
+from yade import (Bo1_Sphere_Aabb, ForceResetter, Ig2_Sphere_Sphere_ScGeom, InsertionSortCollider, NewtonIntegrator, O,
+                  Quaternion, Vector3, utils)
 
 from rockwear.engines import base
-from rockwear.engines.bonds import Bonds
+from rockwear.scenes import yade_scene
 
 Response = namedtuple("Response", "un ut Fn Ft bonds")
 """What YADE did: (n,) opening and (n, 2) tangential displacement (m) as its contact saw them, (n,) and (n, 2) force (N)
@@ -38,7 +37,7 @@ class PairDriver(base.Engine):
         self.radius = O.bodies[second].shape.radius
         self.length = (self.second.pos - self.first.pos).norm()
         interaction = O.interactions[first, second]
-        self.geom, self.initial = interaction.geom, interaction.phys.initD
+        self.geom, self.initial = interaction.geom, bonds.reference_overlap(interaction.phys)
         self.sign = 1 if interaction.id1 == first else -1
         self.sheared = [0.0, 0.0]
         self.rows = []
@@ -75,8 +74,8 @@ def drive_pair(law, un, ut, *, radii=(1.25e-3, 1.25e-3), axes=None, spin=(0.0, 0
     un, ut = np.asarray(un, float), np.asarray(ut, float).reshape(len(un), -1)
     ut = np.pad(ut, ((0, 0), (0, 2 - ut.shape[1])))
     axes = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]]) if axes is None else np.asarray(axes, float)
-    _put_pair(radii, axes[:, 0], swapped)
-    bonds = Bonds(pairs=np.array([[0, 1]]), law=law, clock=lambda: O.time)
+    _put_pair(radii, axes[:, 0], swapped, law.yade_law)
+    bonds = yade_scene.CARRIERS[law.yade_law](pairs=np.array([[0, 1]]), law=law, clock=lambda: O.time, period=1)
     utils.createInteraction(0, 1)
     O.dt = 0.0
     O.step()
@@ -92,18 +91,14 @@ def drive_pair(law, un, ut, *, radii=(1.25e-3, 1.25e-3), axes=None, spin=(0.0, 0
     return Response(un=rows[:, 0], ut=rows[:, 1:3], Fn=rows[:, 3], Ft=rows[:, 4:6], bonds=bonds)
 
 
-def _put_pair(radii, normal, swapped):
+def _put_pair(radii, normal, swapped, yade_law):
     O.reset()
-    O.materials.append(JCFpmMat(type=1, young=1e9, poisson=1.0, frictionAngle=0.0, density=2500.0, tensileStrength=1.0,
-                                cohesion=1.0))
+    O.materials.append(yade_scene.bonding_material(yade_law))
     centres = [np.zeros(3), sum(radii) * normal]
     for centre, radius in reversed([*zip(centres, radii)]) if swapped else zip(centres, radii):
         O.bodies.append(utils.sphere(centre.tolist(), radius, fixed=True))
-    O.engines = [
-        ForceResetter(), InsertionSortCollider([Bo1_Sphere_Aabb()]),
-        InteractionLoop([Ig2_Sphere_Sphere_ScGeom()], [Ip2_JCFpmMat_JCFpmMat_JCFpmPhys(cohesiveTresholdIteration=1)],
-                        [Law2_ScGeom_JCFpmPhys_JointedCohesiveFrictionalPM(neverErase=True)]),
-        NewtonIntegrator(damping=0.0)]
+    O.engines = [ForceResetter(), InsertionSortCollider([Bo1_Sphere_Aabb()]),
+                 yade_scene.bond_loop([Ig2_Sphere_Sphere_ScGeom()]), NewtonIntegrator(damping=0.0)]
 
 
 def programme(law, end_n, end_t, steps):

@@ -2,16 +2,22 @@
 import math
 
 from yade import (
-    Bo1_Facet_Aabb, Bo1_Sphere_Aabb, ForceResetter, FrictMat, FrictViscoMat, Ig2_Facet_Sphere_ScGeom,
-    Ig2_Sphere_Sphere_ScGeom, InsertionSortCollider, InteractionLoop, Ip2_FrictMat_FrictMat_FrictPhys,
+    Bo1_Facet_Aabb, Bo1_Sphere_Aabb, CpmMat, ForceResetter, FrictMat, FrictViscoMat, Ig2_Facet_Sphere_ScGeom,
+    Ig2_Sphere_Sphere_ScGeom, InsertionSortCollider, InteractionLoop, Ip2_CpmMat_CpmMat_CpmPhys,
+    Ip2_FrictMat_FrictMat_FrictPhys,
     Ip2_FrictMat_FrictViscoMat_FrictViscoPhys, Ip2_FrictViscoMat_FrictViscoMat_FrictViscoPhys,
-    Ip2_JCFpmMat_JCFpmMat_JCFpmPhys, JCFpmMat, Law2_ScGeom_FrictPhys_CundallStrack,
+    Ip2_JCFpmMat_JCFpmMat_JCFpmPhys, JCFpmMat, Law2_ScGeom_CpmPhys_Cpm, Law2_ScGeom_FrictPhys_CundallStrack,
     Law2_ScGeom_FrictViscoPhys_CundallStrackVisco, Law2_ScGeom_JCFpmPhys_JointedCohesiveFrictionalPM, MatchMaker,
     NewtonIntegrator, O, log, utils)
+
+from rockwear.engines.bonds import Bonds
+from rockwear.engines.cpm_bonds import CpmBonds
 
 # It would call it a bug that its lists of bodies are off; see Scene._refresh_bounds.
 log.setLevel("BodyContainer", log.ERROR)
 
+CARRIERS = {"JCFpm": Bonds, "Cpm": CpmBonds}
+"""{law of YADE that carries the bonds: engine}."""
 ROCK_MASK, TOOL_MASK = 1, 3
 """Bodies meet where masks share a bit; bit 2 is avoided within the tool."""
 
@@ -21,14 +27,23 @@ def exactly(value):
     return MatchMaker(algo="val", val=value)
 
 
-def put_rock_materials(*, mu, loose=FrictMat):
+def bonding_material(yade_law):
+    """The material of rock while it is bonded; `Bonds.bond` gives each bond its own constants."""
+    if yade_law == "Cpm":
+        return CpmMat(young=1e9, poisson=1.0, frictionAngle=0.0, density=1.0, sigmaT=1.0, epsCrackOnset=1.0,
+                      relDuctility=10.0, damLaw=0, label="bonding rock")
+    return JCFpmMat(type=1, young=1e9, poisson=1.0, frictionAngle=0.0, density=1.0, tensileStrength=1.0, cohesion=1.0,
+                    label="bonding rock")
+
+
+def put_rock_materials(*, mu, loose=FrictMat, yade_law="JCFpm"):
     """Rock while it is bonded, and rock afterwards.
 
     Rock changes its material after bonding: a bond stays the bond it is, and every later contact is a plain Coulomb
-    contact. Stiffness is given by the contact laws, not by these. loose: FrictViscoMat beside a tool of facets.
+    contact. Stiffness is given by the contact laws, not by these. loose: FrictViscoMat beside a tool of facets;
+    yade_law: of kernels.bond_laws.
     """
-    O.materials.append(JCFpmMat(type=1, young=1e9, poisson=1.0, frictionAngle=0.0, density=1.0, tensileStrength=1.0,
-                                cohesion=1.0, label="bonding rock"))
+    O.materials.append(bonding_material(yade_law))
     O.materials.append(loose(young=1e9, poisson=0.3, frictionAngle=math.atan(mu), density=1.0, label="loose rock"))
 
 
@@ -88,13 +103,25 @@ def put_loop_with_facets(*, rock, tool, damping=0.0, ratcheting_free=True):
                  [Law2_ScGeom_FrictViscoPhys_CundallStrackVisco(traceEnergy=True)], damping)
 
 
+def bond_loop(geometry, parameters=(), laws=()):
+    """InteractionLoop for bonds of either YADE law, beside other contacts."""
+    return InteractionLoop(
+        geometry, [Ip2_JCFpmMat_JCFpmMat_JCFpmPhys(cohesiveTresholdIteration=1),
+                   Ip2_CpmMat_CpmMat_CpmPhys(cohesiveThresholdIter=2), *parameters],
+        [Law2_ScGeom_JCFpmPhys_JointedCohesiveFrictionalPM(neverErase=True), Law2_ScGeom_CpmPhys_Cpm(), *laws])
+
+
 def _put_engines(bounds, geometry, parameters, laws, damping):
     O.engines = [
         ForceResetter(),
         InsertionSortCollider(bounds, avoidSelfInteractionMask=2),
-        InteractionLoop(geometry, [Ip2_JCFpmMat_JCFpmMat_JCFpmPhys(cohesiveTresholdIteration=1), *parameters],
-                        [Law2_ScGeom_JCFpmPhys_JointedCohesiveFrictionalPM(neverErase=True), *laws]),
+        bond_loop(geometry, parameters, laws),
         NewtonIntegrator(damping=damping)]
+
+
+def bonds_engine(rock, law, clock):
+    """The engine of a rock's bonds, for the carrier that their law asks for."""
+    return CARRIERS[law.yade_law](pairs=rock.pairs, law=law, laws=rock.laws, clock=clock)
 
 
 def make_bonds(rock, bonds):

@@ -8,6 +8,8 @@ from importlib import import_module
 from pkgutil import iter_modules
 
 from rockwear.kernels.bond_laws.base import BOND_LAWS, Bond, BondLaw, ElasticDomain
+from rockwear.kernels.bond_laws.cohesive import Cohesive
+from rockwear.kernels.bond_laws.coulomb import Coulomb
 from rockwear.kernels.bond_laws.elastic_brittle import ElasticBrittle
 from rockwear.kernels.bond_laws.elastic_damage import ElasticDamage
 from rockwear.kernels.bond_laws.elasto_plastic import ElastoPlasticSoftening
@@ -17,5 +19,5 @@ from rockwear.kernels.bond_laws.nonlinear_elasto_plastic import NonlinearElastoP
 for _module in iter_modules(__path__):
     import_module(f"{__name__}.{_module.name}")
 
-__all__ = ["BOND_LAWS", "Bond", "BondLaw", "ElasticBrittle", "ElasticDamage", "ElasticDomain", "ElastoPlasticSoftening",
-           "Hyperbolic", "NonlinearElastoPlastic", "Parabolic"]
+__all__ = ["BOND_LAWS", "Bond", "BondLaw", "Cohesive", "Coulomb", "ElasticBrittle", "ElasticDamage", "ElasticDomain",
+           "ElastoPlasticSoftening", "Hyperbolic", "NonlinearElastoPlastic", "Parabolic"]

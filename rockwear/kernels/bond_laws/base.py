@@ -86,6 +86,12 @@ class BondLaw(ABC):
 
     name = None
     parameters = ()
+    by_area = False
+    """True if the strengths of the law are those of a bond that stands for 1 m2 of crack."""
+    linear = False
+    """True if the law is linear elastic up to its strength."""
+    yade_law = "JCFpm"
+    """YADE's law that carries the bonds: "JCFpm" within elastic domains, or "Cpm", its concrete model, all through."""
 
     def __init_subclass__(cls, **options):
         super().__init_subclass__(**options)
@@ -192,6 +198,8 @@ class LinearBondLaw(BondLaw):
     H       slope of the softening after the peak against *total* displacement, N/m; math.inf is brittle. In tension the
             peak is at Rn/kn and the end at Rn/kn + Rn/H, in shear the same with Rt, kt [Rojek 2003, figs 4.11, 4.19].
     """
+
+    linear = True
 
     def __init__(self, *, kn, kt, Rn, Rt, H, mu):
         super().__init__(kn=kn, mu=mu)

@@ -1,0 +1,51 @@
+"""What both carriers of bonds share: the laws, the status of each bond, the crack log, the energy dissipated."""
+from collections import namedtuple
+
+import numpy as np
+
+from rockwear.engines.base import FORCES, Engine
+
+INTACT, BROKEN, SEPARATED = 0, 1, 2
+"""Status of a bond. SEPARATED: broken and erased after its particles had parted; a later contact is a new one."""
+
+Crack = namedtuple("Crack", "time x y z normal_x normal_y normal_z mode energy body_1 body_2")
+"""One broken bond: s, m, unit normal, 1 tension or 2 shear, J dissipated in all, ids of the particles."""
+
+
+class BondLog(Engine):
+    """Bonds of the rock with a crack log.
+
+    pairs: (m, 2) body ids; law: of rockwear.kernels.bond_laws; laws: (m,), the law of each bond, `law` itself if not
+    given; clock: a function giving the time (s) for the crack log. `broken` {number: (interaction, phys)} are bonds
+    that are frictional contacts with the reference length of the bond; `energy_released` (J) what bonds dissipated.
+    """
+
+    name = "bonds"
+    phase = FORCES
+
+    def __init__(self, *, pairs, law, laws=None, clock, period=1):
+        super().__init__(period=period)
+        self.pairs = np.asarray(pairs)
+        self.law, self.laws = law, [law] * len(self.pairs) if laws is None else laws
+        self.status = np.full(len(self.pairs), INTACT, np.int8)
+        self.cracks, self.broken, self.energy_released, self.clock = [], {}, 0.0, clock
+
+    def in_contact(self):
+        """(m,) bool: bonds that are intact, or broken and under compression; these conduct heat."""
+        touching = self.status == INTACT
+        for n, (_, phys) in self.broken.items():
+            touching[n] = phys.normalForce.squaredNorm() > 0
+        return touching
+
+    def state(self):
+        return {"status": self.status.copy(), "energy_released": self.energy_released,
+                "cracks": np.array(self.cracks, float).reshape(-1, len(Crack._fields))}
+
+    def restore(self, state):
+        self.status, self.energy_released = state["status"].copy(), float(state["energy_released"])
+        self.cracks = [Crack(*row[:7], int(row[7]), row[8], int(row[9]), int(row[10]))
+                       for row in state["cracks"].tolist()]
+
+    def log(self):
+        modes = [crack.mode for crack in self.cracks]
+        return {"tensile_cracks": (modes.count(1), "-"), "shear_cracks": (modes.count(2), "-")}
