@@ -6,7 +6,7 @@ from yade import O
 
 from rockwear.engines.bond_log import INTACT, SEPARATED, BondLog, Crack
 
-LOOK_PERIOD = 50
+LOOK_PERIOD = 10
 """Steps between looks at the bonds that slip or soften."""
 SHARES = 8
 """The others are looked at in so many turns."""
@@ -90,29 +90,33 @@ class CpmBonds(BondLog):
         for n in list(numbers):
             if n in self.active:
                 (_, geom, phys), omega, before = self.active[n]
+                if phys.omega == omega and phys.epsTPl[0] == before[2]:
+                    continue
             else:
                 (_, geom, phys), omega, before = self.quiet[n], 0.0, None
-                if phys.omega == 0.0 and phys.epsTPl.squaredNorm() == 0.0:
+                if phys.omega == 0.0 and phys.epsTPl[0] == 0.0:
                     continue
                 self.active[n] = self.quiet.pop(n), 0.0, None
             self._account(n, geom, phys, omega, before)
 
     @staticmethod
     def _shear(geom, phys):
-        """Tangential displacement (m) and force (N) on the second body, in the law's sign."""
-        return phys.epsT * phys.refLength, _carried(-phys.shearForce, geom.normal)
+        """Tangential displacement (m), force (N) on the second body, in the law's sign, and a measure of slip."""
+        return phys.epsT * phys.refLength, _carried(-phys.shearForce, geom.normal), phys.epsTPl[0]
 
     def _account(self, n, geom, phys, omega_before, before):
         law, omega, normal, length = self.laws[n], phys.omega, geom.normal, phys.refLength
         gone = omega >= 1.0 and not phys.neverDamage
-        total, force = self._shear(geom, phys)
+        total, force, _ = self._shear(geom, phys)
         if gone:
             force = force * 0.0
         elastic = force / law.kt
         if before is None:
-            slip, mean = total - elastic, force
+            # All shear force that a bond had before it broke is gone with it.
+            lost = total * min(law.kt, law.Rt / max(total.norm(), 1e-300)) if gone else force
+            slip, mean = total - elastic, 0.5 * (force + lost)
         else:
-            total_before, force_before = (_carried(vector, normal) for vector in before)
+            total_before, force_before = (_carried(vector, normal) for vector in before[:2])
             slip, mean = total - total_before - elastic + force_before / law.kt, 0.5 * (force + force_before)
         work = mean.dot(slip)
         self.by_slip[n] += work
@@ -126,7 +130,7 @@ class CpmBonds(BondLog):
         plastic = (total - elastic) / length
         for k in range(3):
             phys.epsTPl[k] = plastic[k]
-        self.active[n] = self.active[n][0], omega, (total, force)
+        self.active[n] = self.active[n][0], omega, (total, force, plastic[0])
 
     def _break(self, n):
         interaction = self.active[n][0][0]
