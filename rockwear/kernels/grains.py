@@ -26,7 +26,8 @@ def grains(positions, *, volume, edge, seed):
     n, d = positions.shape
     count = round(volume / (CELL[d] * edge**d))
     smallest = (volume / n / CELL[d])**(1 / d)
-    require(count >= 3, "grain_edge", edge, f"at most {(volume / 3 / CELL[d])**(1 / d):.3g}: a rock of three grains", "m")
+    largest = (volume / 3 / CELL[d])**(1 / d)
+    require(count >= 3, "grain_edge", edge, f"at most {largest:.3g}: a rock of three grains", "m")
     require(count <= n, "grain_edge", edge, f"at least {smallest:.3g}: a particle a grain; 0 for none", "m")
     rng = np.random.default_rng([seed, n])
     seeds = positions[rng.choice(n, count, replace=False)]

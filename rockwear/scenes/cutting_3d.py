@@ -63,8 +63,8 @@ def make(values):
     # The tooth is lowered at the left end, where the block is free so that a chip can break out.
     rock.fix("bottom", "right", "front", "back")
     rock.fix("left", below=v.height - 2 * v.depth_of_cut)
-    return Cut(rock=rock, tool=tool(v), programme=LowerAndCut(ways=ways(v), start=start(v)), gravity=Gravity(v.gravity),
-               background_damping=v.background_damping, notes=notes(v), **parts.common(v))
+    return Cut(rock=parts.bond(rock, v), tool=tool(v), programme=LowerAndCut(ways=ways(v), start=start(v)),
+               gravity=Gravity(v.gravity), background_damping=v.background_damping, notes=notes(v), **parts.common(v))
 
 
 def make_loose(values):

@@ -160,7 +160,7 @@ class Track:
                      np.array([self.own[k], self.far[k]]) + self.origin), np.inf)
             for k, below in zip((0, -1), depth)]
         rock.fixed = np.min(sides, axis=0) < 2 * v.radius_max
-        return rock
+        return parts.bond(rock, v)
 
 
 def _distance(points, line):

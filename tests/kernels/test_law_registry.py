@@ -52,7 +52,7 @@ def registry():
 
 
 def test_the_laws_by_name():
-    assert list(BOND_LAWS) == ["brittle", "damage", "plastic", "padova"]
+    assert list(BOND_LAWS) == ["brittle", "damage", "plastic", "padova", "coulomb", "cohesive"]
     assert sorted(WEAR_LAWS) == ["dissipation", "modes", "power", "pressure"]
 
 
@@ -81,7 +81,7 @@ def test_a_class_with_a_name_is_registered_with_its_parameters(registry):
     found = {parameter.name: parameter for parameter in law_parameters(registry, "bond_law")}
     assert registry["glue"] is Glue
     assert found["glue_age"].when == {"bond_law": ("glue",)} and found["glue_age"].default == 1.0
-    assert found["kt"].when == {"bond_law": ("brittle", "damage", "plastic", "glue")}
+    assert found["kt"].when == {"bond_law": ("brittle", "damage", "plastic", "coulomb", "cohesive", "glue")}
     assert found["kn"].when is None and found["mu"].when is None
     assert found["Rn"].when == {"bond_law": ("brittle", "damage", "plastic", "padova")}
 

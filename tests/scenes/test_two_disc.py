@@ -71,7 +71,7 @@ def test_the_scene_leaves_a_figure_for_each_of_the_monograph(tmp_path):
     run = run_script(script, "--out", str(tmp_path / "out"), "--steps", "101", out=tmp_path / "out")
     assert run.code == 0, run.stderr
     figures = {file.stem for file in (tmp_path / "out/figures").glob("*.png")}
-    assert figures >= {f"figure_4_{number}" for number in range(11, 27)} and len(figures) == 32
+    assert figures >= {f"figure_4_{number}" for number in range(11, 27)} and len(figures) == 48
     assert (tmp_path / "out/report.html").stat().st_size > 1e5
     results = {name: entry["value"] for name, entry in run.summary["results"].items()}
     assert results["largest deviation"] < 1e-12

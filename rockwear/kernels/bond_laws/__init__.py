@@ -8,13 +8,13 @@ from importlib import import_module
 from pkgutil import iter_modules
 
 from rockwear.kernels.bond_laws.base import BOND_LAWS, Bond, BondLaw, ElasticDomain
-from rockwear.kernels.bond_laws.cohesive import Cohesive
-from rockwear.kernels.bond_laws.coulomb import Coulomb
 from rockwear.kernels.bond_laws.elastic_brittle import ElasticBrittle
 from rockwear.kernels.bond_laws.elastic_damage import ElasticDamage
 from rockwear.kernels.bond_laws.elasto_plastic import ElastoPlasticSoftening
 from rockwear.kernels.bond_laws.hardening import Hyperbolic, Parabolic
 from rockwear.kernels.bond_laws.nonlinear_elasto_plastic import NonlinearElastoPlastic
+from rockwear.kernels.bond_laws.coulomb import Coulomb
+from rockwear.kernels.bond_laws.cohesive import Cohesive
 
 for _module in iter_modules(__path__):
     import_module(f"{__name__}.{_module.name}")

@@ -7,9 +7,10 @@ from rockwear.kernels.parameter import Parameter, plausible
 stress = plausible(1e2, 1e11)
 """A rule: Pa."""
 
-TENSION = Parameter("bond_tension", 7e6, "Pa", stress, "tensile strength of a bond over the area of crack it stands for",
+TENSION = Parameter("bond_tension", 7e6, "Pa", stress, "tensile strength of a bond over its area of crack",
                     "[Rojek 2014, 5.1]: that of the rock")
-COHESION = Parameter("bond_cohesion", 20e6, "Pa", stress, "shear strength of a bond without normal force, over its area")
+COHESION = Parameter("bond_cohesion", 20e6, "Pa", stress,
+                     "shear strength of a bond without normal force, over its area of crack")
 
 
 class Coulomb(LinearBondLaw):

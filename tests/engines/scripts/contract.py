@@ -238,7 +238,7 @@ class FacetCut(World):
         places = radius * np.array([(0, -1), (8, -1 - 8 * SLOPE), (7.1, -2.8 - 8 * SLOPE), (-5, -1.1 - 5 * SLOPE),
                                     (-9, -1.1 - 9 * SLOPE)])
         self.rock = discs(places + (0, rise), radius)
-        self.rock.pairs, self.rock.strength_factor = np.empty((0, 2), int), np.empty(0)
+        self.rock.pairs = np.empty((0, 2), int)
         self.tool = FacetTool.of_outline(np.array([(-0.02, 0), (0, rise), (0.02, 0), (0.02, 0.01), (-0.02, 0.01)]),
                                          segment=1.7e-3, density=7830.0)
 
