@@ -209,8 +209,8 @@ def _parameters(kind, found, declared, radius):
     for name in found:
         require(name in used, f"{place}.{name}", values[name], f"left out with bond_law = {found['bond_law']}",
                 declared[name].unit)
-    _entries(place, found, [name for name in used
-                            if not isinstance(declared[name].default, bool) and name not in OPTIONAL], used)
+    # What is none by default may be left out.
+    _entries(place, found, [name for name in used if declared[name].default and name not in OPTIONAL], used)
     for name in found:
         _check_stress(place, declared[name], values[name], (2 * radius)**declared[name].size_power[DIMENSION[kind]])
     return {name: values[name] for name in found}

@@ -69,7 +69,7 @@ def test_every_parameter_gets_a_value_in_the_order_of_its_declaration():
     ("--kn nan", "kn = nan N/m: must be finite"), ("--kn -2e10", "kn = -2e+10 N/m: must be greater than 0"),
     ("--seed 1.5", "seed = 1.5: must be a whole number of at least 0"),
     ("--heat maybe", "heat = maybe: must be true or false"),
-    ("--bond_law magic", "bond_law = magic: must be one of brittle, damage, plastic, padova"),
+    ("--bond_law magic", "bond_law = magic: must be one of brittle, damage, plastic, padova, coulomb, cohesive"),
     ("--grading_factor 9", "grading_factor = 9: must be at most 8"),
     ("--velocities 4,-1", "velocities = -1 m/s: must be greater than 0")])
 def test_mistakes_are_said_in_one_line(words, error):
@@ -141,7 +141,7 @@ def test_help_lists_groups_with_defaults_units_sources_and_conditions(capsys):
     assert list(sections)[1:] == ["bonds:", "heat:", "others:"]
     bonds, heat = sections["bonds:"], sections["heat:"]
     assert "--kn N/m normal stiffness of bonds and rock contacts (default 2e+10 N/m; [Rojek 2003, 5.1])" in bonds
-    assert "--bond_law brittle|damage|plastic|padova" in bonds
+    assert "--bond_law brittle|damage|plastic|padova|coulomb|cohesive" in bonds
     assert "only with bond_law = damage or plastic" in bonds
     assert "5 % of nothing (default 30 W/m2K; [Rojek 2003, 7.5]; only with heat = true; shank = free)" in heat
     assert "--heat [true|false]" in heat
