@@ -28,7 +28,7 @@ STRENGTH = 1e4, 1e9
 """Pa. Ranges of properties hold every rock and soil, and are narrow enough that a slip of 1e6 in the unit falls out."""
 PROPERTIES = {
     "youngs_modulus": ("Pa", 1e7, 1e12), "poissons_ratio": ("", -1.0, 0.5), "ucs": ("Pa", *STRENGTH),
-    "tensile_strength": ("Pa", *STRENGTH), "fracture_toughness": ("Pa m^0.5", 1e3, 1e8),
+    "tensile_strength": ("Pa", *STRENGTH), "fracture_toughness": ("Pa sqrt(m)", 1e3, 1e8),
     "fracture_energy": ("J/m2", 0.01, 1e4), "friction_angle": ("deg", 2.0, 89.0), "cohesion": ("Pa", *STRENGTH),
     "hoek_brown_m": ("", 0.1, 100.0), "hoek_brown_sigma_ci": ("Pa", *STRENGTH), "triaxial": ("Pa", 0.0, 1e10)}
 """{property of a rock: (unit, least, largest)}."""
