@@ -85,11 +85,11 @@ def _formatter(prog):
     return argparse.HelpFormatter(prog, max_help_position=26, width=118)
 
 
-def _parser(groups):
+def _parser(groups, usage=None):
     """argparse's parser: one argument group a title, nothing converted, defaults left to `read`."""
     parser = argparse.ArgumentParser(
-        usage=f"yade -n -x {sys.argv[0]} [--name value ...]", add_help=False, allow_abbrev=False, exit_on_error=False,
-        argument_default=argparse.SUPPRESS, formatter_class=_formatter)
+        usage=usage or f"yade -n -x {sys.argv[0]} [--name value ...]", add_help=False, allow_abbrev=False,
+        exit_on_error=False, argument_default=argparse.SUPPRESS, formatter_class=_formatter)
     sections, known, declared = {}, flat(groups), flat(groups)
     for group in groups:
         title = group.title if isinstance(group, Group) else "parameters"
@@ -175,6 +175,9 @@ def _folder_name(words):
     return "".join(c if c.isalnum() or c in "-_.=," else "_" for c in words)
 
 
-def describe(groups):
-    """Print every parameter by group, with its unit, meaning, default, source and condition of use."""
-    print(_parser(groups).format_help(), end="")
+def describe(groups, usage=None):
+    """Print every parameter by group, with its unit, meaning, default, source and condition of use.
+
+    usage: how the program is called, where it is no YADE script.
+    """
+    print(_parser(groups, usage).format_help(), end="")

@@ -1,0 +1,157 @@
+"""Fits the micro-parameters of a rock to laboratory values: search on small specimens, then on full ones, then a check
+on packings that the fit has not seen. The entry is calibration/fit.py."""
+import sys
+import time
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import numpy as np
+
+from calibration.campaigns.runs import RunFailed, Runs
+from calibration.fitting import rock_page
+from calibration.fitting.rock_laws import AIM, Micro
+from calibration.fitting.rock_targets import GROUPS, targets_of
+from calibration.fitting.rock_tests import Laboratory, Stage
+from calibration.fitting.surrogate import Problem, Surrogate, solve, uncertainty
+from rockwear.kernels.checks import ParameterError, require
+from rockwear.run import parameters
+
+SMALL = Stage("small", side=43.6, hurry=2.0, seeds=(1, 2, 3, 4))
+FULL = Stage("full", side=87.2, hurry=1.0, seeds=(11, 12, 13, 14, 15))
+CHECK = Stage("check", side=87.2, hurry=1.0, seeds=(21, 22, 23, 24, 25))
+"""Full specimens have 2,100 particles, as those of [Rojek 2003, 5.1]; small ones a quarter of them, and twice the
+scatter: they give the slopes."""
+MOST = {"small": 7, "full": 3}
+"""Measurements of a stage."""
+CHECKS = 2
+"""Checks in all. Where the first misses a target its packings join those of the fit, and others check the new rock."""
+LEAST_NOISE, COMMON_SEEDS = 0.004, 0.5
+"""Noise of a mean: at least, and over its standard error, since packings that a stage shares change alike."""
+
+
+@dataclass
+class Step:
+    """One set of tests: the stage, the unknowns x (n,), {Observable: (seeds,) values}."""
+
+    stage: str
+    x: np.ndarray
+    values: dict
+
+
+@dataclass
+class Fit:
+    """A fit and how it went. verdicts: {Observable: Verdict} of the last check; error: (n,), of log unknowns."""
+
+    x: np.ndarray
+    error: np.ndarray
+    steps: list = field(default_factory=list)
+    verdicts: dict = field(default_factory=dict)
+    not_failed: list = field(default_factory=list)
+    seconds: float = 0.0
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """An observable on packings that the fit has not seen. mean, deviation: over `count` packings; met: the mean
+    differs from the target by no more than is allowed."""
+
+    mean: float
+    deviation: float
+    count: int
+    met: bool
+
+
+def fit(*, micro, measure, say=print):
+    """Fit of the unknowns of `micro`. measure(x, Stage) -> {Observable: (seeds,) values}: the laboratory."""
+    found, began = Fit(micro.first, np.zeros(len(micro.first))), time.time()
+    problem = Problem(target=np.array([float(o.scaled(o.target)) for o in micro.observables]),
+                      tolerance=np.array([AIM * o.tolerance for o in micro.observables]), first=micro.first,
+                      low=micro.low, high=micro.high, hold=micro.hold)
+
+    def tested(x, stage):
+        values = measure(x, stage)
+        found.steps.append(Step(stage.name, np.array(x), values))
+        say(rock_page.progress(found.steps[-1], micro, time.time() - began))
+        return values
+
+    model = Surrogate(*micro.slopes())
+    for stage in (SMALL, FULL):
+        solution = solve(lambda x: statistics(tested(x, stage)), model, problem, start=found.x, most=MOST[stage.name])
+        found.x = solution.x
+        fitted = next(step for step in found.steps if step.stage == stage.name and np.array_equal(step.x, found.x))
+        model = model.next_stage(found.x)
+    seen = fitted.values
+    for number in range(CHECKS):
+        stage = replace(CHECK, name=f"check {number + 1}", seeds=tuple(seed + 10 * number for seed in CHECK.seeds))
+        values = tested(found.x, stage)
+        found.verdicts = {o: verdict(o, of_seeds) for o, of_seeds in values.items()}
+        if number + 1 == CHECKS or all(one.met for one in found.verdicts.values()):
+            break
+        seen = {o: np.concatenate([seen[o], values[o]]) for o in values}
+        model.add(found.x, *statistics(seen))
+        found.x = model.solve(problem, found.x)
+        model = model.next_stage(found.x)
+    errors = np.array([spread(o, values[o])[1] for o in micro.observables])
+    found.error = uncertainty(model, problem, found.x, errors)
+    found.seconds = time.time() - began
+    return found
+
+
+def statistics(values):
+    """(means (m,), noise (m,)) of {Observable: (seeds,)}, as the solver sees them."""
+    means, errors = np.array([spread(o, of_seeds) for o, of_seeds in values.items()]).T
+    return means, np.hypot(LEAST_NOISE, COMMON_SEEDS * errors)
+
+
+def spread(observable, values):
+    """(mean, standard error), scaled, of the values (seeds,) of an observable; nan where a packing has none."""
+    scaled = observable.scaled(values)
+    return float(observable.scaled(np.mean(values))), float(scaled.std(ddof=1) / np.sqrt(len(scaled)))
+
+
+def verdict(observable, values):
+    """Verdict of the values (seeds,) of an observable."""
+    mean = float(np.mean(values))
+    allowed = observable.tolerance if observable.kind == "nu" else observable.allowed * observable.target
+    return Verdict(mean=mean, deviation=float(np.std(values, ddof=1)), count=len(values),
+                   met=bool(abs(mean - observable.target) <= allowed))
+
+
+def main(words):
+    """Command line. -> exit code: 0 where every target is met, 3 where some are not; 2: options that cannot be used;
+    1: a run failed."""
+    if "--help" in words:
+        parameters.describe(GROUPS, usage="python3 -m calibration.fit --youngs_modulus PA --poissons_ratio NU --ucs PA "
+                            "--tensile_strength PA --out DIR [--name value ...]")
+        return 0
+    try:
+        values = parameters.read(GROUPS, words)
+        targets = targets_of(values)
+        require(values["out"], "out", "nothing", "given: the folder of the results")
+        folder = _folder(values["out"])
+    except ParameterError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 2
+    radii = values["radius_min"], values["radius_max"]
+    micro = Micro(law=values["bond_law"], targets=targets, radius=sum(radii) / 2, porosity=values["porosity"])
+    try:
+        with Runs(folder / "runs", keep=True) as runs:
+            laboratory = Laboratory(runs=runs, targets=targets, radii=radii, micro=micro)
+            found = fit(micro=micro, measure=laboratory.measure)
+            found.not_failed = laboratory.not_failed.get(found.steps[-1].stage, [])
+        rock_page.write(folder, found, micro=micro, targets=targets, values=values)
+    except (RunFailed, OSError) as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 1
+    print("\n".join(rock_page.answer(found, micro)))
+    print(f"rock: {folder / 'rock.json'}; page: {folder / 'fit.md'}")
+    return 0 if all(one.met for one in found.verdicts.values()) else 3
+
+
+def _folder(word):
+    folder = Path(word)
+    try:
+        (folder / "runs").mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise ParameterError("out", word, f"a folder that can be written ({error.strerror})") from None
+    return folder

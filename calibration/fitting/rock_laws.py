@@ -1,0 +1,140 @@
+"""What a rock fit varies and what it measures, as data: unknowns of a bond law, observables, first guesses, slopes.
+
+Unknowns are chosen so that scaling laws hold exactly, as long as strains are small and loading is slow: stresses grow
+with `kn` alone in E, and with `tension` alone in all strengths, because the others are ratios.
+
+    kn             N/m, normal stiffness                          E
+    kt_over_kn     ratio of the stiffnesses                       nu, and E
+    tension        Pa, tensile strength of a bond over its area   all strengths
+    shear          shear strength of a bond over the tensile one  UCS over tensile strength
+    mu             friction                                       strengths under confinement
+    length         m, fracture energy kn / tension^2              toughness
+"""
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+LATTICE_NU, LATTICE_E = 0.04, 0.69
+"""Random packings against the triangular lattice of equal discs: nu is so much larger, E so many times as large
+(calibration/results/uniaxial.md)."""
+SHEAR, TENSION, FRICTION = 3.0, 1.4, 0.7
+"""First guesses: shear over tensile strength of a bond, its tensile strength over the rock's, friction."""
+TOUGHNESS = 1 / 6.88
+"""sqrt(m), K_IC over tensile strength of rocks [Zhang 2002, as recalled], where no toughness is given."""
+LOOSELY = 3.0
+"""Hold of the friction where no confined strength is given: it moves only if nothing else helps."""
+GAP = 0.08
+"""bonding_gap over the mean radius [Rojek 2014, eq. 6], the value of the scenes."""
+AIM = 0.4
+"""What the fit aims at, as a part of what is allowed."""
+
+
+@dataclass(frozen=True)
+class Observable:
+    """One number of the laboratory. test: of rock_tests.TESTS; result: its name there; confinement: Pa; target: SI;
+    allowed: relative difference from the target; kind: row of SLOPES."""
+
+    name: str
+    test: str
+    result: str
+    target: float
+    allowed: float
+    kind: str
+    unit: str
+    confinement: float = 0.0
+
+    def scaled(self, value):
+        """The number that the solver sees: a logarithm, nu itself. nan for what has none."""
+        if self.kind == "nu":
+            return np.asarray(value, float)
+        return np.log(np.where(np.asarray(value, float) > 0, value, math.nan))
+
+    @property
+    def tolerance(self):
+        """Allowed difference of the scaled number."""
+        return max(self.allowed * abs(self.target), 0.005) if self.kind == "nu" else self.allowed
+
+
+def observables(targets):
+    """[Observable] of Targets."""
+    t = targets
+    found = [Observable("youngs_modulus", "compression", "youngs_modulus", t.youngs_modulus, 0.05, "E", "Pa"),
+             Observable("poissons_ratio", "compression", "poissons_ratio", t.poissons_ratio, 0.05, "nu", ""),
+             Observable("ucs", "compression", "peak_stress", t.ucs, 0.05, "ucs", "Pa"),
+             Observable("tensile_strength", "tension", "peak_stress", t.tensile_strength, 0.1, "tension", "Pa")]
+    if t.fracture_toughness is not None:
+        found.append(Observable("fracture_toughness", "toughness", "fracture_toughness", t.fracture_toughness, 0.1,
+                                "toughness", "Pa sqrt(m)"))
+    return found + [Observable(f"sigma1 at {1e-6 * least:.3g} MPa", "triaxial", "peak_stress", largest, 0.05,
+                               "confined", "Pa", confinement=least) for least, largest in t.points]
+
+
+SLOPES = {
+    "E": {"kn": (1, 0), "kt_over_kn": (0.25, 0.1)},
+    "nu": {"kt_over_kn": (-0.12, 0.05)},
+    "ucs": {"kt_over_kn": (0, 0.2), "tension": (1, 0), "shear": (0.5, 0.3), "mu": (0.1, 0.2), "length": (0.2, 0.2)},
+    "tension": {"kt_over_kn": (0, 0.2), "tension": (1, 0), "shear": (0.1, 0.15), "length": (0.15, 0.1)},
+    "toughness": {"kt_over_kn": (0, 0.1), "tension": (1, 0), "shear": (0.05, 0.1), "mu": (0, 0.05),
+                  "length": (0.5, 0.15)},
+    "confined": {"kt_over_kn": (0, 0.2), "tension": (0.6, 0.2), "shear": (0.3, 0.3), "mu": (0.4, 0.3),
+                 "length": (0.1, 0.15)}}
+"""{kind of observable: {unknown: (slope of its logarithm over that of the unknown, standard deviation)}}; a deviation
+of 0: exact. What is not named has no influence."""
+
+
+class Micro:
+    """The unknowns of one fit and what they mean. law: of rock_targets.LAWS; radius: mean radius, m."""
+
+    def __init__(self, *, law, targets, radius, porosity):
+        self.law, self.radius, self.porosity = law, radius, porosity
+        self.observables = observables(targets)
+        guess = self._first_guess(targets)
+        spans = {"kn": 10, "kt_over_kn": (0.01, 4.0), "tension": 10, "shear": (0.3, 30.0), "mu": (0.05, 2.0),
+                 "length": (radius, 100 * guess["length"])}
+        bounds = {name: span if isinstance(span, tuple) else (guess[name] / span, guess[name] * span)
+                  for name, span in spans.items()}
+        self.fixed = {}
+        if targets.fracture_toughness is None:
+            self.fixed["length"] = guess.pop("length")
+        self.names = list(guess)
+        self.first = np.log(list(guess.values()))
+        self.low, self.high = np.log([bounds[name] for name in guess]).T
+        self.hold = np.array([LOOSELY if name == "mu" and not targets.points else np.inf for name in guess])
+
+    def _first_guess(self, t):
+        nu = t.poissons_ratio - LATTICE_NU
+        ratio = min(max((1 - 3 * nu) / (1 + nu), 0.02), 3.5)
+        kn = t.youngs_modulus / (LATTICE_E * 2 * math.sqrt(3) * (1 + ratio) / (3 + ratio))
+        tension = TENSION * t.tensile_strength
+        toughness = t.fracture_toughness or TOUGHNESS * t.tensile_strength
+        length = max(toughness**2 / t.youngs_modulus * kn / tension**2, 1.01 * self.radius)
+        return {"kn": kn, "kt_over_kn": ratio, "tension": tension, "shear": SHEAR, "mu": FRICTION, "length": length}
+
+    def slopes(self):
+        """(jacobian (m, n), deviation (m, n)) of the observables over the unknowns."""
+        entries = np.array([[SLOPES[o.kind].get(name, (0, 0)) for name in self.names] for o in self.observables], float)
+        return entries[..., 0], entries[..., 1]
+
+    def named(self, x):
+        """{unknown: value} of logarithms (n,)."""
+        return {**dict(zip(self.names, np.exp(x).tolist())), **self.fixed}
+
+    def parameters(self, x):
+        """{parameter of a scene: value} of the logarithms (n,) of the unknowns, in five digits."""
+        u = self.named(x)
+        found = {"kn": u["kn"], "kt": u["kt_over_kn"] * u["kn"]}
+        if self.law == "brittle":
+            force = 2 * self.radius * u["tension"]
+            found.update(Rn=force, Rt=u["shear"] * force)
+        else:
+            found.update(bond_tension=u["tension"], bond_cohesion=u["shear"] * u["tension"])
+        if self.law == "cohesive":
+            found["bond_fracture_energy"] = u["length"] * u["tension"]**2 / u["kn"]
+        found.update(mu=u["mu"], bonding_gap=GAP * self.radius, porosity=self.porosity)
+        return {"bond_law": self.law, **{name: float(f"{value:.5g}") for name, value in found.items()}}
+
+    def at_bounds(self, x):
+        """[words] on the unknowns that ended at a bound."""
+        return [f"{name} = {np.exp(value):.3g}" for name, value, low, high in zip(self.names, x, self.low, self.high)
+                if min(value - low, high - value) < 1e-6]

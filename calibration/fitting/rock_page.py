@@ -1,0 +1,143 @@
+"""What a rock fit leaves: rock.json, fit.md with its answer first, a figure, and a line for each step."""
+import json
+import math
+
+import matplotlib
+import numpy as np
+
+from calibration import generated
+from rockwear.model.rock_file import FORMAT, PROPERTIES
+from rockwear.report import plots
+
+SCALES = {"Pa": (1e6, "MPa"), "Pa sqrt(m)": (1e6, "MPa sqrt(m)"), "": (1, "")}
+
+
+def shown(observable, value):
+    """A value of an observable, in MPa where it is a stress."""
+    factor, unit = SCALES[observable.unit]
+    if observable.name == "youngs_modulus":
+        factor, unit = 1e9, "GPa"
+    return f"{value / factor:.3g} {unit}".strip()
+
+
+def progress(step, micro, seconds):
+    """One line on a step."""
+    parts = [f"{o.name} {shown(o, float(np.mean(values)))} ({off(o, values)})" for o, values in step.values.items()]
+    return f"{seconds / 60:5.1f} min  {step.stage:8s} {', '.join(parts)}"
+
+
+def off(observable, values):
+    """Words on the difference of the mean from the target."""
+    difference = float(np.mean(values)) - observable.target
+    return f"{difference:+.3f}" if observable.kind == "nu" else f"{100 * difference / observable.target:+.1f} %"
+
+
+def answer(found, micro):
+    """Lines that say what was reached and what was not."""
+    missed = [o for o, one in found.verdicts.items() if not one.met]
+    count = next(iter(found.verdicts.values())).count
+    if not missed:
+        lines = [f"All {len(found.verdicts)} targets are met, on {count} packings that the fit has not seen."]
+    else:
+        words = ", ".join(f"{o.name} ({shown(o, found.verdicts[o].mean)} instead of {shown(o, o.target)})"
+                          for o in missed)
+        lines = [f"{len(found.verdicts) - len(missed)} of {len(found.verdicts)} targets are met, on {count} packings "
+                 f"that the fit has not seen. Not reached: {words}."]
+    bounds = micro.at_bounds(found.x)
+    if bounds:
+        lines.append(f"At the end of its range: {', '.join(bounds)}. The bond law {micro.law} cannot come nearer.")
+    if found.not_failed:
+        lines.append(f"Some specimens did not fail before the end of the test: {', '.join(found.not_failed)}. Their "
+                     "strengths are lower bounds.")
+    return lines
+
+
+def write(folder, found, *, micro, targets, values):
+    """Write rock.json, fit.md and fit.png into `folder`."""
+    rock = rock_file(found, micro=micro, targets=targets, values=values)
+    (folder / "rock.json").write_text(json.dumps(rock, indent=1) + "\n", encoding="utf-8")
+    with matplotlib.rc_context(plots.STYLE):
+        figure(found, micro).savefig(folder / "fit.png")
+    generated.record(folder / "rock.json", folder / "fit.png")
+    generated.write_page(folder / "fit.md", page(found, micro=micro, targets=targets, values=values))
+
+
+def rock_file(found, *, micro, targets, values):
+    """The rock as a dict of the format of rockwear.model.rock_file."""
+    measured = {}
+    for o, one in found.verdicts.items():
+        if o.kind != "confined":
+            measured[o.name] = {"mean": one.mean, "standard_deviation": one.deviation, "packings": one.count,
+                                "unit": o.unit}
+    confined = {o: one for o, one in found.verdicts.items() if o.kind == "confined"}
+    if confined:
+        measured["triaxial"] = {"mean": [[o.confinement, one.mean] for o, one in confined.items()],
+                                "standard_deviation": [one.deviation for one in confined.values()],
+                                "packings": next(iter(confined.values())).count, "unit": "Pa"}
+    return {"format": FORMAT, "name": values["name"], "source": values["source"],
+            "targets": {name: {"value": value, "unit": PROPERTIES[name][0]}
+                        for name, value in targets.as_properties().items()},
+            "plane": {"parameters": micro.parameters(found.x),
+                      "resolution": {name: values[name] for name in ("radius_min", "radius_max")},
+                      "measured": measured}}
+
+
+def page(found, *, micro, targets, values):
+    """Lines of fit.md."""
+    lines = [f"# {values['name']}: {values['source']}", "", " ".join(answer(found, micro)), ""]
+    lines += generated.table(
+        ["", "target", "mean ± standard deviation", "standard error", "difference", "allowed", "met"],
+        [[o.name, shown(o, o.target), f"{shown(o, one.mean)} ± {shown(o, one.deviation)}",
+          shown(o, one.deviation / math.sqrt(one.count)), off(o, [one.mean]),
+          f"{o.tolerance:.3f}" if o.kind == "nu" else f"{100 * o.allowed:g} %", "yes" if one.met else "**no**"]
+         for o, one in found.verdicts.items()])
+    if targets.left_out:
+        lines += [targets.left_out, ""]
+    lines += ["![steps](fit.png)", "", "## Micro-parameters", ""]
+    lines += generated.table(["parameter", "value"], list(micro.parameters(found.x).items()))
+    radii = " to ".join(f"{1e3 * values[name]:g}" for name in ("radius_min", "radius_max"))
+    lines += [f"They hold at radii of {radii} mm in the plane. Standard errors of what was varied, from the scatter of the packings: "
+              + ", ".join(f"{name} {100 * error:.1f} %" for name, error in zip(micro.names, found.error))
+              + "." + (f" Not varied: {', '.join(micro.fixed)}, for want of a target." if micro.fixed else ""), ""]
+    lines += ["## Steps", "", f"{found.seconds / 60:.0f} minutes for runs that were not there before. Means over the "
+              "packings of each stage:", ""]
+    lines += generated.table(
+        ["stage", *micro.names, *(o.name for o in micro.observables)],
+        [[step.stage, *(f"{value:.4g}" for value in np.exp(step.x)),
+          *(f"{shown(o, float(np.mean(step.values[o])))} ({off(o, step.values[o])})" for o in micro.observables)]
+         for step in found.steps])
+    return lines
+
+
+def figure(found, micro):
+    """Measured over target, step by step, and each packing of the last check; strengths over confinement."""
+    confined = [o for o in micro.observables if o.kind == "confined"]
+    drawn, panels = plots.canvas(12 if confined else 7.5, 4.5, 1, 2 if confined else 1)
+    axes = panels[0]
+    for number, o in enumerate(micro.observables):
+        colour = f"C{number}"
+        axes.plot([np.mean(step.values[o]) / o.target for step in found.steps], "o-", color=colour, label=o.name,
+                  markersize=4)
+        last = found.steps[-1].values[o] / o.target
+        axes.plot(np.full(len(last), len(found.steps) - 0.6 + 0.08 * number), last, "x", color=colour)
+    names = [step.stage for step in found.steps]
+    axes.set_xticks([*range(len(names)), len(names) - 0.4], [*names, "packings"], rotation=60)
+    axes.axhspan(0.95, 1.05, color="0.9", zorder=0)
+    axes.set(ylabel="measured / target")
+    axes.legend(fontsize=8)
+    if confined:
+        draw_envelope(panels[1], found, micro, confined)
+    return drawn
+
+
+def draw_envelope(axes, found, micro, confined):
+    """sigma1 at failure over sigma3."""
+    ucs = next(o for o in micro.observables if o.name == "ucs")
+    values = found.steps[-1].values
+    axes.plot([0] + [1e-6 * o.confinement for o in confined], [1e-6 * o.target for o in (ucs, *confined)], "k*",
+              markersize=10, label="target")
+    for o in (ucs, *confined):
+        axes.plot(np.full(len(values[o]), 1e-6 * o.confinement), 1e-6 * values[o], "x", color="C0",
+                  label="packings" if o is ucs else None)
+    axes.set(xlabel="σ3, MPa", ylabel="σ1 at failure, MPa", xlim=(-1, None), ylim=(0, None))
+    axes.legend()

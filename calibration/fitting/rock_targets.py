@@ -1,0 +1,170 @@
+"""What a fitted rock is to be: laboratory values from the command line and a table, checked against each other."""
+import csv
+import math
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from rockwear.kernels.bond_laws import BOND_LAWS
+from rockwear.kernels.checks import ParameterError, finite, require
+from rockwear.kernels.parameter import Group, Parameter, choice, file, plausible, text
+from rockwear.model.rock_file import PROPERTIES, RADIUS, check_properties
+from rockwear.scenes.parameters import OF_ROCK
+
+NEEDED = "youngs_modulus", "poissons_ratio", "ucs", "tensile_strength"
+"""Values without which there is no fit."""
+POISSON = -0.2, 0.36
+"""Poisson's ratios that bonds with springs along and across them can give."""
+LAWS = "brittle", "coulomb", "cohesive"
+"""Bond laws that can be fitted, as far as they exist."""
+CONFINEMENTS = 0.1, 0.3
+"""Confinements over UCS at which a friction angle is fitted."""
+HIGHEST = 1.5
+"""Confinement over UCS above which points of a table are left out: the rock is ductile there."""
+MOST_POINTS = 3
+"""Confined tests of one packing, each dear."""
+FIRST_POINT = 0.2
+"""Largest difference of a table's unconfined strength from UCS, over UCS."""
+
+
+def wanted(name):
+    """A rule: a property in its range, or nothing."""
+    unit, low, high = PROPERTIES[name]
+
+    def rule(given, value, _):
+        if value == "":
+            return None
+        found = finite(given, value, unit)
+        require(low <= found <= high, given, found, f"between {low:g} and {high:g}", unit)
+        return found
+    return rule
+
+
+def _target(name, meaning):
+    return Parameter(name, "", PROPERTIES[name][0], wanted(name), meaning, "yours")
+
+
+TARGETS = Group("targets", (
+    _target("youngs_modulus", "Young's modulus"), _target("poissons_ratio", "Poisson's ratio"),
+    _target("ucs", "uniaxial compressive strength"), _target("tensile_strength", "strength in direct tension"),
+    _target("fracture_toughness", "K_IC; not needed"),
+    _target("friction_angle", "of Mohr-Coulomb at low confinement; not needed"),
+    Parameter("triaxial", "", "", file, "CSV table of strengths, columns sigma3 and sigma1 in Pa, or sigma3_MPa and "
+              "sigma1_MPa; not needed, and in place of friction_angle", "yours")))
+ROCK = Group("rock", (
+    Parameter("name", "fitted_rock", "", text, "of the rock"),
+    Parameter("source", "laboratory values given to calibration.fit", "", text, "where the targets are from"),
+    Parameter("radius_min", 1e-3, "m", plausible(*RADIUS), "smallest radius of the particles", "[Rojek 2003, 5.1]"),
+    Parameter("radius_max", 1.5e-3, "m", plausible(*RADIUS), "largest radius of the particles", "[Rojek 2003, 5.1]"),
+    Parameter("bond_law", LAWS[-1] if LAWS[-1] in BOND_LAWS else LAWS[0], "",
+              choice(*(law for law in LAWS if law in BOND_LAWS)), "force law of the bonds"),
+    OF_ROCK["porosity"]))
+OUTPUT = Group("output", (Parameter("out", "", "", text, "folder of rock.json, fit.md and all runs"),))
+GROUPS = [TARGETS, ROCK, OUTPUT]
+
+
+@dataclass(frozen=True)
+class Targets:
+    """Properties of the rock in SI. fracture_toughness: None where it is not given; points: ((sigma3, sigma1), ...) at
+    sigma3 > 0; friction_angle, deg, None where it is not given; left_out: words on points that are not fitted."""
+
+    youngs_modulus: float
+    poissons_ratio: float
+    ucs: float
+    tensile_strength: float
+    fracture_toughness: float | None = None
+    friction_angle: float | None = None
+    points: tuple = ()
+    left_out: str = ""
+
+    def as_properties(self):
+        """{property: value} of a rock file."""
+        names = *NEEDED, "fracture_toughness", "friction_angle"
+        found = {name: getattr(self, name) for name in names if getattr(self, name) is not None}
+        if self.points and self.friction_angle is None:
+            found["triaxial"] = [list(point) for point in self.points]
+        return found
+
+
+def targets_of(values):
+    """Targets of {name: value} of GROUPS. Raises ParameterError for what is missing, contradictory or out of reach."""
+    for name in NEEDED:
+        require(values[name] is not None, name, "nothing", f"given: {', '.join(NEEDED)} are needed")
+    found = {name: values[name] for name in (*NEEDED, "fracture_toughness", "friction_angle")
+             if values[name] is not None}
+    try:
+        check_properties(found)
+    except ParameterError as error:
+        raise ParameterError(error.name.partition(".")[2], error.value, error.rule, error.unit) from None
+    low, high = POISSON
+    require(low <= found["poissons_ratio"] <= high, "poissons_ratio", found["poissons_ratio"],
+            f"between {low:g} and {high:g}, all that bonds with springs along and across them can give")
+    require(values["bond_law"] == "cohesive" or values["fracture_toughness"] is None, "fracture_toughness",
+            values["fracture_toughness"], f"left out with bond_law = {values['bond_law']}: toughness follows the radii")
+    require(not values["triaxial"] or values["friction_angle"] is None, "friction_angle", values["friction_angle"],
+            "left out with triaxial", "deg")
+    require(values["radius_max"] >= values["radius_min"], "radius_max", values["radius_max"],
+            f"at least radius_min = {values['radius_min']:g}", "m")
+    if values["triaxial"]:
+        points, words = _chosen(read_table(values["triaxial"]), values["triaxial"], found["ucs"])
+        return Targets(**found, points=points, left_out=words)
+    if values["friction_angle"] is not None:
+        sine = math.sin(math.radians(values["friction_angle"]))
+        slope = (1 + sine) / (1 - sine)
+        return Targets(**found, points=tuple((part * found["ucs"], (1 + slope * part) * found["ucs"])
+                                             for part in CONFINEMENTS))
+    return Targets(**found)
+
+
+def read_table(path):
+    """{sigma3: mean sigma1}, Pa, of a CSV file with the columns sigma3 and sigma1, in Pa, or MPa if the header says so.
+
+    Further columns are allowed. Raises ParameterError (triaxial).
+    """
+    try:
+        with open(path, newline="", encoding="utf-8-sig") as lines:
+            rows = list(csv.reader(lines, skipinitialspace=True))
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        raise ParameterError("triaxial", str(path), f"a readable CSV file ({error})") from None
+    heads = [head.strip().lower() for head in rows[0]] if rows else []
+    places, factors = {}, {}
+    for name in ("sigma3", "sigma1"):
+        fitting = [k for k, head in enumerate(heads) if re.match(rf"{name}(?![0-9])", head)]
+        require(len(fitting) == 1, "triaxial", str(path), f"a table with one column {name}")
+        places[name] = fitting[0]
+        factors[name] = 1e6 if "mpa" in heads[fitting[0]] else 1.0
+    found = {}
+    for number, row in enumerate(rows[1:], 2):
+        if any(cell.strip() for cell in row):
+            pair = [_cell(path, number, row, places[name], factors[name]) for name in ("sigma3", "sigma1")]
+            found.setdefault(pair[0], []).append(pair[1])
+    require(found, "triaxial", str(path), "a table with at least one row")
+    return {least: float(np.mean(found[least])) for least in sorted(found)}
+
+
+def _cell(path, number, row, place, factor):
+    try:
+        value = factor * finite("triaxial", row[place])
+        require(0 <= value <= PROPERTIES["triaxial"][2] and (value == 0 or value >= 1e3), "triaxial", value, "a stress")
+    except (IndexError, ParameterError):
+        raise ParameterError("triaxial", str(Path(path)), f"a table of stresses in Pa, unlike line {number}: "
+                             f"{','.join(row)[:60]} (a column in MPa says so in its header)") from None
+    return value
+
+
+def _chosen(table, path, ucs):
+    """((points to fit), words on the others) of a table."""
+    unconfined = table.get(0.0, ucs)
+    require(abs(unconfined / ucs - 1) <= FIRST_POINT, "triaxial", f"{path}, sigma1 = {unconfined:g} Pa at sigma3 = 0",
+            f"within {100 * FIRST_POINT:g} % of ucs = {ucs:g}")
+    strengths = [ucs, *(table[least] for least in table if least)]
+    require(len(strengths) > 1 and all(a < b for a, b in zip(strengths, strengths[1:])), "triaxial", str(path),
+            "a table in which sigma1 rises with sigma3 from ucs on")
+    low = [least for least in table if 0 < least <= HIGHEST * ucs]
+    require(low, "triaxial", str(path), f"a table with a point at a confinement of at most {HIGHEST:g} ucs")
+    kept = sorted({low[round(k)] for k in np.linspace(0, len(low) - 1, MOST_POINTS)})
+    others = [f"{1e-6 * least:g}" for least in table if least and least not in kept]
+    words = f"Points of the table at {', '.join(others)} MPa are not fitted." if others else ""
+    return tuple((least, table[least]) for least in kept), words
