@@ -96,8 +96,8 @@ def page(found, *, micro, targets, values):
     lines += ["![steps](fit.png)", "", "## Micro-parameters", ""]
     lines += generated.table(["parameter", "value"], list(micro.parameters(found.x).items()))
     radii = " to ".join(f"{1e3 * values[name]:g}" for name in ("radius_min", "radius_max"))
-    lines += [f"They hold at radii of {radii} mm in the plane. Standard errors of what was varied, from the scatter "
-              "of the packings: " + ", ".join(f"{name} {100 * error:.1f} %" for name, error in zip(micro.names, found.error))
+    lines += [f"They hold at radii of {radii} mm in the plane. Standard errors of what was varied, from the scatter of "
+              "packings: " + ", ".join(f"{name} {100 * error:.1f} %" for name, error in zip(micro.names, found.error))
               + "." + (f" Not varied: {', '.join(micro.fixed)}, for want of a target." if micro.fixed else ""), ""]
     lines += ["## Steps", "", f"{found.seconds / 60:.0f} minutes for runs that were not there before. Means over the "
               "packings of each stage:", ""]
