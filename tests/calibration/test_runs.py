@@ -7,6 +7,10 @@ from calibration.benchmarks import __main__ as bench
 from calibration.benchmarks import loading_speed, particle_size
 from calibration.campaigns import sharp_and_worn, tip_temperature, uniaxial, wear
 from calibration.campaigns.runs import RunFailed, Runs, finished
+from calibration.fitting import rock_fit
+from calibration.fitting.rock_laws import Micro
+from calibration.fitting.rock_targets import Targets
+from calibration.fitting.rock_tests import Laboratory
 from calibration.validation import __main__ as validation
 from rockwear.run.checkpoint import digest
 
@@ -22,6 +26,8 @@ def started():
     yield from ((script, {**wear.COARSE, **values}) for script, values in wear.CASES.values())
     for values in [*bench.jobs().values(), sharp_and_worn.CUT, particle_size.CUT]:
         yield wear.TOOTH, values
+    for law in ("brittle", "coulomb", "cohesive"):
+        yield from runs_of_a_fit(law).started[::4]
     for cases, common, _ in uniaxial.CAMPAIGNS.values():
         yield from ((uniaxial.SCRIPT, {**common, **values, "test": "tension"}) for values in cases.values())
     yield from ((uniaxial.SCRIPT, {**uniaxial.SMALL, **values, "speed": loading_speed.SPEEDS[0]})
@@ -29,6 +35,41 @@ def started():
     for script, values, _ in tip_temperature.SCENES.values():
         yield from ((script, {**values, **tip_temperature.QUICK, **change})
                     for choices in tip_temperature.OPEN.values() for change in choices.values())
+
+
+class Recorded:
+    """In place of Runs: notes what is started."""
+
+    def __init__(self):
+        self.started, self.folders = [], []
+
+    def start(self, name, script, **values):
+        self.started.append((script, values))
+        self.folders.append(name)
+        return self
+
+    def result(self, name=None):
+        return self if name is None else 1.0
+
+
+def runs_of_a_fit(law="cohesive", **targets):
+    """Recorded: the tests of one step of a rock fit."""
+    found = Targets(18e9, 0.18, 60e6, 7e6, points=((6e6, 90e6),), **targets)
+    runs, micro = Recorded(), Micro(law=law, targets=found, radius=2.5e-3, porosity=0.1)
+    Laboratory(runs=runs, targets=found, radii=(2e-3, 3e-3), micro=micro).measure(micro.first, rock_fit.SMALL)
+    return runs
+
+
+def test_a_fit_tests_every_packing_once_and_keeps_the_results_apart():
+    runs = runs_of_a_fit()
+    assert len(runs.folders) == 3 * len(rock_fit.SMALL.seeds) == len(set(runs.folders))
+    assert runs_of_a_fit().folders == runs.folders
+    assert not set(runs_of_a_fit("coulomb").folders) & set(runs.folders)
+    speeds = {values.get("test"): values["speed"] for _, values in runs.started}
+    # At half this speed and twice the size, [Rojek 2003]'s bonds (183 MPa, 24.6 GPa) would be loaded at 0.05 m/s.
+    assert speeds["compression"] == pytest.approx(2 * 0.05 * (60 / 18000) / (183 / 24600), rel=0.02)
+    assert speeds["compression"] > speeds["tension"]
+    assert {values["width"] for _, values in runs.started} == {0.109}
 
 
 def test_every_run_that_is_started_has_parameters_that_its_scene_takes(tmp_path):
