@@ -20,6 +20,9 @@ LAYERS = {
     "rockwear/scenes": (
         {"rockwear.kernels", "rockwear.model", "rockwear.engines", "rockwear.run", "rockwear.scenes"}, YADE),
     "yade_scripts": ({"rockwear.scenes", "rockwear.run", "calibration.laboratory"}, set()),
+    # A command that runs scenes and draws; no scene imports it.
+    "calibration/laboratory/envelope.py": (
+        {"rockwear.kernels", "rockwear.report", "calibration.campaigns.runs", "calibration.generated"}, PAPER),
     "calibration/laboratory": (
         {"rockwear.kernels", "rockwear.model", "rockwear.engines", "rockwear.run", "rockwear.report", "rockwear.scenes",
          "calibration.laboratory"}, YADE),

@@ -76,7 +76,7 @@ def test_confinement_makes_the_rock_stronger_and_no_stiffer(broken, tmp_path):
 
 def test_without_confinement_it_is_the_uniaxial_test(tmp_path):
     free = confined(tmp_path / "free", confinement=0)
-    uniaxial = run_script(ROOT / "yade_scripts/uniaxial.py", *arguments({**SMALL, "drop": 0.7}), "--out",
+    uniaxial = run_script(ROOT / "yade_scripts/uniaxial.py", *arguments({**SMALL, "speed": 0.1}), "--out",
                           str(tmp_path / "uniaxial"), out=tmp_path / "uniaxial")
     for name in ("peak_stress", "peak_strain", "youngs_modulus", "poissons_ratio", "tensile_cracks", "shear_cracks"):
         assert value(free, name) == pytest.approx(value(uniaxial, name), rel=1e-3), name

@@ -16,7 +16,9 @@ def stress_strain(run):
     if not {"stress", "axial_strain", "lateral_strain", "platen_strain"} <= run.columns.keys() or not run.rows:
         return None
     return Section("Stress and strain", "Strain is measured in the middle of the specimen; dashed, from the platens' "
-                   "travel. Cracks count all broken bonds.", [save(run, "stress_strain", curves(run))])
+                   "travel. Cracks count all broken bonds." + (
+                       " The stress across is that between upper and lower half of the specimen; what is applied to "
+                       "the sides is constant." if "lateral_stress" in run.columns else ""), [save(run, "stress_strain", curves(run))])
 
 
 def failure(run):
@@ -37,10 +39,13 @@ def curves(run):
     axes.plot(travel, stress, color=palette.STRESS_OF_TRAVEL, linestyle="--", linewidth=1,
               label="axial, by the platens")
     axes.plot(100 * run.column("lateral_strain"), stress, color=palette.LATERAL, linewidth=1, label="lateral")
+    if "lateral_stress" in run.columns:
+        axes.plot(travel, 1e-6 * run.column("lateral_stress"), color=palette.CONFINEMENT, linewidth=1,
+                  label="stress across")
     # Past the peak the lateral strain is the opening of cracks and may be any multiple of the axial one.
     widest = travel.max() or 1.0
     axes.set(xlabel="strain / %", ylabel="stress / MPa", xlim=(-0.6 * widest, 1.2 * widest))
-    axes.legend(loc="lower left", bbox_to_anchor=(0, 1.0), ncols=3)
+    axes.legend(loc="lower left", bbox_to_anchor=(0, 1.0), ncols=4)
     other = axes.twinx()
     other.plot(travel, run.column("tensile_cracks") + run.column("shear_cracks"), color=palette.CRACK, linewidth=1)
     other.set_ylabel("cracks", color=palette.CRACK)

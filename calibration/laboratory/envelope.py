@@ -1,0 +1,205 @@
+"""The strength envelope of a rock: confined tests and direct tension, Mohr-Coulomb and Hoek-Brown, one figure.
+
+    python3 -m calibration.laboratory.envelope DIR [--confinements 0,1e6,2e6,5e6,10e6] [--seeds 1,2,3]
+                                               [--points FILE.csv] [--rock NAME|FILE] [--name value ...]
+
+Runs yade_scripts/triaxial.py at each confinement (Pa) and yade_scripts/uniaxial.py in tension with each seed, two at a
+time; finished runs are kept, so that an interrupted command resumes. Further names and values go to both scripts.
+--points: peak stresses of a laboratory, a CSV file with columns sigma3... and sigma1... in Pa, or in MPa where the
+header says MPa; those up to the largest confinement are fitted and drawn beside ours. Writes envelope.json,
+envelope.md, envelope.png and provenance.json into DIR.
+"""
+import argparse
+import csv
+import json
+import sys
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+
+from calibration import generated
+from calibration.campaigns.runs import RunFailed, Runs
+from rockwear.kernels.checks import ParameterError, finite, require
+from rockwear.kernels.parameter import integer, listed, number, numbers
+from rockwear.kernels.strength_envelope import hoek_brown, mohr_coulomb
+from rockwear.report import palette, plots
+
+CONFINED, UNIAXIAL = "yade_scripts/triaxial.py", "yade_scripts/uniaxial.py"
+CONFINEMENTS, SEEDS = "0,1e6,2e6,5e6,10e6", "1,2,3"
+"""Pa, as [Bahaaddini 2018, fig. 10]."""
+QUANTITIES = "peak_stress", "residual_stress", "youngs_modulus", "poissons_ratio", "failed"
+ONLY_CONFINED = {"membrane_interval", "drop"}
+"""Parameters that the test in tension does not take, or takes otherwise."""
+MPA = 1e6
+
+
+def measure(folder, *, confinements, seeds, at_once=2, **values):
+    """The envelope that `fitted` gives, of tests in subfolders of `folder`; finished ones are kept.
+
+    confinements: Pa; seeds: of the packings; values: {parameter: value} of all tests. Raises RunFailed, and
+    ParameterError where the points have no envelope.
+    """
+    common = dict(report="false", snapshot_period=1, **values)
+    pulled = {name: value for name, value in common.items() if name not in ONLY_CONFINED}
+    with Runs(folder, at_once=at_once, keep=True) as runs:
+        tension = [runs.start(f"tension-{seed}", UNIAXIAL, test="tension", seed=seed, **pulled) for seed in seeds]
+        confined = {(confinement, seed): runs.start(f"{confinement:g}-{seed}", CONFINED, confinement=confinement,
+                                                    seed=seed, **common)
+                    for seed in seeds for confinement in confinements}
+        points = [{"sigma3": confinement, "seed": seed, **{name: run.result().result(name) for name in QUANTITIES}}
+                  for (confinement, seed), run in confined.items()]
+        tension = [run.result().result("tensile_strength") for run in tension]
+    return fitted(points, tension)
+
+
+def fitted(points, tension=()):
+    """{"points", "tensile_strengths", "mohr_coulomb", "hoek_brown"}: fits as {name: {"value", "half_width"}}.
+
+    points: [{"sigma3": Pa, "peak_stress": Pa, ...}]; tension: Pa. Hoek-Brown counts the tests in tension as points;
+    Mohr-Coulomb does not, because it ends in a cut-off. Raises ParameterError.
+    """
+    sigma3, sigma1 = ([point[name] for point in points] for name in ("sigma3", "peak_stress"))
+    line = mohr_coulomb(sigma3, sigma1)
+    found = {"points": points, "tensile_strengths": list(tension), "mohr_coulomb": _plain(line)}
+    try:
+        curve = hoek_brown(sigma3, sigma1, list(tension) or None)
+        found["hoek_brown"] = {**_plain(curve), "tensile_strength": curve.tensile_strength}
+    except ParameterError as error:
+        # A sand, or points on a line: the line stands for itself.
+        found["hoek_brown"] = {"refused": str(error)}
+    return found
+
+
+def _plain(fit):
+    return {name: part._asdict() if hasattr(part, "_asdict") else part for name, part in fit._asdict().items()}
+
+
+def read_points(file):
+    """[{"sigma3": Pa, "peak_stress": Pa}] of a laboratory's CSV file. Raises ParameterError."""
+    try:
+        with open(file, encoding="utf-8", newline="") as lines:
+            rows = list(csv.DictReader(lines))
+    except (OSError, UnicodeDecodeError) as error:
+        raise ParameterError("points", str(file), f"a CSV file that can be read ({error})") from None
+    header = list(rows[0]) if rows else []
+    columns = [next((name for name in header if name and name.startswith(wanted)), None)
+               for wanted in ("sigma3", "sigma1")]
+    require(None not in columns, "points", str(file), "a table with columns sigma3... and sigma1...")
+    scale = [MPA if "MPa" in name else 1.0 for name in columns]
+    return [{name: finite(f"points, {column}", row[column]) * factor
+             for name, column, factor in zip(("sigma3", "peak_stress"), columns, scale)} for row in rows]
+
+
+# ---- what is written
+
+
+def draw(ours, laboratory):
+    """sigma1 over sigma3: tests, both fits, and the laboratory's."""
+    figure, (axes,) = plots.canvas(8, 5.5)
+    largest = max(point["sigma3"] for point in ours["points"])
+    at = np.linspace(-1.1 * max([0.0, *ours["tensile_strengths"]]), 1.05 * largest, 400)
+    for found, colour, what in ((ours, palette.SIMULATED, "simulated"),
+                                (laboratory, palette.PUBLISHED, "laboratory")):
+        if found is None:
+            continue
+        x, y = ([point[name] / MPA for point in found["points"]] for name in ("sigma3", "peak_stress"))
+        axes.plot(x, y, "o", color=colour, markerfacecolor="none" if what == "laboratory" else colour, label=what)
+        if found["tensile_strengths"]:
+            axes.plot([-stress / MPA for stress in found["tensile_strengths"]], [0] * len(found["tensile_strengths"]),
+                      "s", color=colour, markersize=4)
+        for name, style, curve in (("Mohr-Coulomb", "--", line_of(found)), ("Hoek-Brown", "-", curve_of(found))):
+            if curve:
+                axes.plot(at / MPA, np.array(curve(at)) / MPA, style, color=colour, linewidth=1,
+                          label=f"{name}, {what}")
+    axes.set(xlabel="σ3 / MPa", ylabel="σ1 / MPa", ylim=(0, None))
+    axes.legend(loc="upper left")
+    return figure
+
+
+def line_of(found):
+    """sigma1(sigma3), Pa, of the fitted line."""
+    line = found["mohr_coulomb"]
+    slope = np.tan(np.radians(45 + 0.5 * line["friction_angle"]["value"]))**2
+    return lambda sigma3: 2 * line["cohesion"]["value"] * np.sqrt(slope) + slope * sigma3
+
+
+def curve_of(found):
+    """sigma1(sigma3), Pa, of the fitted curve; None where there is none."""
+    curve = found["hoek_brown"]
+    if "refused" in curve:
+        return None
+    m, strength = curve["m_i"]["value"], curve["sigma_ci"]["value"]
+    return lambda sigma3: sigma3 + np.sqrt(np.where(m * sigma3 + strength > 0, m * strength * sigma3 + strength**2,
+                                                    np.nan))
+
+
+def page(ours, laboratory):
+    """Lines of Markdown: the fits, then the tests."""
+    fits = {"simulated": ours, **({"laboratory": laboratory} if laboratory else {})}
+    lines = ["# Strength envelope", "", "± is half the 95 % confidence interval (Student's t).", ""]
+    lines += generated.table(
+        ["", "c, MPa", "φ, °", "m_i", "σci, MPa", "σt of the curve, MPa", "points"],
+        [[what, *_pair(found["mohr_coulomb"], "cohesion", "friction_angle"), *_curve(found["hoek_brown"]),
+          len(found["points"])] for what, found in fits.items()])
+    for what, found in fits.items():
+        if "refused" in found["hoek_brown"]:
+            lines += [f"Hoek-Brown, {what}: {found['hoek_brown']['refused']}.", ""]
+    tension = np.array(ours["tensile_strengths"])
+    if len(tension):
+        lines += [f"Direct tension: {tension.mean() / MPA:.3g} MPa in the mean of {len(tension)}, from "
+                  f"{tension.min() / MPA:.3g} to {tension.max() / MPA:.3g}.", ""]
+    lines += generated.table(
+        ["σ3, MPa", "seed", "σ1 at the peak, MPa", "at the end", "E, GPa", "ν", "failed"],
+        [[f"{p['sigma3'] / MPA:g}", p["seed"], f"{p['peak_stress'] / MPA:.4g}", f"{p['residual_stress'] / MPA:.4g}",
+          f"{p['youngs_modulus'] / 1e9:.3g}", f"{p['poissons_ratio']:.3g}", "yes" if p["failed"] else "no"]
+         for p in sorted(ours["points"], key=lambda point: (point["sigma3"], point["seed"]))])
+    return [*lines, "![σ1 over σ3](envelope.png)"]
+
+
+def _pair(fit, first, second):
+    return [f"{fit[name]['value'] / scale:.3g} ± {fit[name]['half_width'] / scale:.2g}"
+            for name, scale in ((first, MPA), (second, 1.0))]
+
+
+def _curve(fit):
+    if "refused" in fit:
+        return ["-"] * 3
+    return [*reversed(_pair(fit, "sigma_ci", "m_i")), f"{fit['tensile_strength'] / MPA:.3g}"]
+
+
+def main(words):
+    """Measure, fit, write. -> exit code."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter,
+                                     allow_abbrev=False)
+    parser.add_argument("folder", type=Path, metavar="DIR")
+    for name, default in (("confinements", CONFINEMENTS), ("seeds", SEEDS), ("points", "")):
+        parser.add_argument(f"--{name}", default=default)
+    given, rest = parser.parse_known_args(words)
+    try:
+        confinements = listed(numbers(number(0, 1e9))("confinements", given.confinements, "Pa"))
+        seeds = [int(seed) for seed in listed(numbers(integer(0))("seeds", given.seeds, ""))]
+        require(len(rest) % 2 == 0 and all(name.startswith("--") for name in rest[::2]), "arguments", " ".join(rest),
+                "pairs of --name value")
+        laboratory = [point for point in (read_points(given.points) if given.points else [])
+                      if point["sigma3"] <= max(confinements)]
+        laboratory = fitted(laboratory) if laboratory else None
+        ours = measure(given.folder, confinements=confinements, seeds=seeds,
+                       **{name[2:]: value for name, value in zip(rest[::2], rest[1::2])})
+    except ParameterError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 2
+    except RunFailed as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 1
+    written = given.folder / "envelope.json", given.folder / "envelope.png"
+    written[0].write_text(json.dumps({"simulated": ours, "laboratory": laboratory}, indent=1) + "\n", encoding="utf-8")
+    with matplotlib.rc_context(plots.STYLE):
+        draw(ours, laboratory).savefig(written[1])
+    generated.record(*written)
+    print(generated.write_page(given.folder / "envelope.md", page(ours, laboratory)))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
