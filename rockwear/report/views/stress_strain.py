@@ -15,10 +15,12 @@ def stress_strain(run):
     """Section of stress over strain."""
     if not {"stress", "axial_strain", "lateral_strain", "platen_strain"} <= run.columns.keys() or not run.rows:
         return None
-    return Section("Stress and strain", "Strain is measured in the middle of the specimen; dashed, from the platens' "
-                   "travel. Cracks count all broken bonds." + (
-                       " The stress across is that between upper and lower half of the specimen; what is applied to "
-                       "the sides is constant." if "lateral_stress" in run.columns else ""), [save(run, "stress_strain", curves(run))])
+    text = ("Strain is measured in the middle of the specimen; dashed, from the platens' travel. Cracks count all "
+            "broken bonds.")
+    if "lateral_stress" in run.columns:
+        text += (" The stress across is that between upper and lower half of the specimen; what is applied to the "
+                 "sides is constant.")
+    return Section("Stress and strain", text, [save(run, "stress_strain", curves(run))])
 
 
 def failure(run):

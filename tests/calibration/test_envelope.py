@@ -1,0 +1,76 @@
+"""The envelope of a rock: fits of tests, points of a laboratory, the page, and bad input."""
+import json
+import math
+
+import pytest
+
+from calibration.laboratory import envelope
+from rockwear.kernels.checks import ParameterError
+
+SLOPE = 4.0
+"""Of sigma1 over sigma3: phi = 36.87 degrees."""
+
+
+def points(*confinements, strength=30e6):
+    return [{"sigma3": s, "seed": 1, "peak_stress": strength + SLOPE * s, "residual_stress": 3 * s,
+             "youngs_modulus": 1e10, "poissons_ratio": 0.2, "failed": True} for s in confinements]
+
+
+def test_fits_of_points_on_a_line():
+    found = envelope.fitted(points(0.0, 5e6, 10e6), [3e6])
+    assert found["mohr_coulomb"]["cohesion"]["value"] == pytest.approx(30e6 / (2 * math.sqrt(SLOPE)))
+    assert found["mohr_coulomb"]["friction_angle"]["value"] == pytest.approx(math.degrees(2 * math.atan(2)) - 90)
+    assert float(envelope.line_of(found)(7e6)) == pytest.approx(58e6)
+    assert found["hoek_brown"]["tensile_strength"] < float(envelope.curve_of(found)(0.0))
+
+
+def test_points_without_a_curve_keep_their_line():
+    flat = [{**point, "peak_stress": 30e6 + 0.9 * point["sigma3"]} for point in points(0.0, 5e6, 10e6)]
+    found = envelope.fitted(flat)
+    assert "rising faster" in found["hoek_brown"]["refused"] and envelope.curve_of(found) is None
+    assert any("rising faster" in line for line in envelope.page({**found, "tensile_strengths": []}, None))
+
+
+@pytest.mark.parametrize("header, scale", [("rock,sigma3_MPa,sigma2_MPa,sigma1_peak_MPa", 1),
+                                           ("rock,sigma3,x,sigma1", 1e6)])
+def test_points_of_a_laboratory_are_read_in_either_unit(tmp_path, header, scale):
+    file = tmp_path / "points.csv"
+    file.write_text(f"{header}\nA,{5 * scale},0,{80 * scale}\n", encoding="utf-8")
+    assert envelope.read_points(file) == [{"sigma3": pytest.approx(5e6), "peak_stress": pytest.approx(80e6)}]
+
+
+@pytest.mark.parametrize("text, words", [("a,b\n1,2\n", "columns sigma3... and sigma1"), ("", "columns sigma3"),
+                                         ("sigma3,sigma1\n1,x\n", "points, sigma1 = x: must be a number")])
+def test_bad_points_are_refused(tmp_path, text, words):
+    file = tmp_path / "points.csv"
+    file.write_text(text, encoding="utf-8")
+    with pytest.raises(ParameterError, match=words):
+        envelope.read_points(file)
+
+
+@pytest.mark.parametrize("words, said", [
+    (["--confinements=-1,2"], "confinements = -1 Pa: must be at least 0"), (["--seeds", "1.5"], "seeds = 1.5"),
+    (["--Rn"], "pairs of --name value"), (["--points", "nowhere.csv"], "points = nowhere.csv: must be a CSV file")])
+def test_bad_input_ends_in_one_line_before_the_first_run(tmp_path, capsys, words, said):
+    assert envelope.main([str(tmp_path / "out"), *words]) == 2
+    lines = capsys.readouterr().err.splitlines()
+    assert len(lines) == 1 and lines[0].startswith("error: ") and said in lines[0]
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_rock_is_measured_fitted_and_drawn(tmp_path):
+    """Two confinements, one packing of some 120 discs; the second time nothing runs."""
+    out, laboratory = tmp_path / "out", tmp_path / "points.csv"
+    laboratory.write_text("sigma3_MPa,sigma1_MPa\n0,80\n10,120\n50,200\n", encoding="utf-8")
+    words = [str(out), "--confinements", "0,10e6", "--seeds", "1", "--points", str(laboratory), "--width", "0.03",
+             "--height", "0.022", "--kt", "4e9", "--Rt", "1e5"]
+    assert envelope.main(words) == 0
+    found = json.loads((out / "envelope.json").read_text(encoding="utf-8"))
+    assert [point["sigma3"] for point in found["simulated"]["points"]] == [0, 10e6]
+    assert found["simulated"]["tensile_strengths"][0] > 1e6
+    # Points of the laboratory beyond the largest confinement do not count.
+    assert len(found["laboratory"]["points"]) == 2
+    assert (out / "envelope.png").stat().st_size > 1e4 and "m_i" in (out / "envelope.md").read_text(encoding="utf-8")
+    summaries = [file.stat().st_mtime_ns for file in sorted(out.glob("*/summary.json"))]
+    assert len(summaries) == 3 and envelope.main(words) == 0
+    assert [file.stat().st_mtime_ns for file in sorted(out.glob("*/summary.json"))] == summaries
