@@ -97,13 +97,15 @@ def test_a_specimen_that_never_fails_ends_and_says_so(tmp_path):
     assert value(strong, "peak_stress") == pytest.approx(value(strong, "residual_stress"), rel=0.05)
 
 
-@pytest.mark.parametrize("after", [2, 6])
-def test_stopped_and_resumed_equals_never_stopped(broken, tmp_path, after):
+@pytest.mark.parametrize("after, stage, values", [(2, 0, dict(speed=0.02, strain_max=1e-3)), (4, 1, {})])
+def test_stopped_and_resumed_equals_never_stopped(tmp_path, after, stage, values):
     """While the pressure rises, and while the platens approach."""
-    out, options = tmp_path / "out", dict(checkpoint_interval=0.01, confinement=20e6)
+    out, options = tmp_path / "out", dict(checkpoint_interval=0.01, confinement=20e6, **values)
+    never = confined(tmp_path / "never", **options)
     stopped = interrupt_script(SCRIPT, out, signal.SIGTERM, after, **{**SMALL, **options})
     assert stopped.code == 128 + signal.SIGTERM
-    assert_as_if_never_stopped(confined(out, "--resume", **options), broken, "cracks.csv")
+    assert history(out)["stage [-]"][-1] == stage
+    assert_as_if_never_stopped(confined(out, "--resume", **options), never, "cracks.csv")
 
 
 REFUSED = [
