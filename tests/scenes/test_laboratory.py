@@ -73,6 +73,8 @@ def test_the_end_leaves_figures_and_balances(compressed):
 def test_the_rock_is_weaker_in_tension_and_as_stiff(compressed, tmp_path):
     pulled = laboratory(tmp_path / "out", test="tension")
     assert value(pulled, "failed")
+    assert value(pulled, "tensile_strength") == value(pulled, "peak_stress")
+    assert "tensile_strength" not in compressed.summary["results"]
     assert 1e6 < value(pulled, "peak_stress") < 0.5 * value(compressed, "peak_stress")
     assert value(pulled, "youngs_modulus") == pytest.approx(value(compressed, "youngs_modulus"), rel=0.03)
 
