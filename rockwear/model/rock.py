@@ -84,7 +84,7 @@ class RockAssembly:
     @property
     def volume(self):
         """m2 or m3 that the particles fill with their pores."""
-        return float(packing.volumes(self.radii, self.positions.shape[1]).sum()) / (1 - self.porosity)
+        return float(self.masses.sum()) / self.density
 
     @property
     def strength_factor(self):
@@ -101,7 +101,8 @@ class RockAssembly:
         i, j = self.pairs.T
         lengths = np.linalg.norm(self.positions[i] - self.positions[j], axis=1)
         power = self.positions.shape[1] - 1
-        shares = packing.volumes(self.radii, power + 1) / (1 - self.porosity) / self.scale**power
+        # By mass, which stays where radii are reduced.
+        shares = self.masses / self.density / self.scale**power
         mean = (0.5 * math.pi if power == 1 else 2.0) * float(shares.sum() / lengths.sum())
         return mean * self.strength_factor**power
 

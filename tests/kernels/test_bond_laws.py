@@ -5,12 +5,13 @@ import numpy as np
 import pytest
 
 from rockwear.kernels.bond_laws import (
-    ElasticBrittle, ElasticDamage, ElastoPlasticSoftening, Hyperbolic, NonlinearElastoPlastic, Parabolic)
+    Cohesive, Coulomb, ElasticBrittle, ElasticDamage, ElastoPlasticSoftening, Hyperbolic, NonlinearElastoPlastic, Parabolic)
 from rockwear.kernels.checks import ParameterError
 
 KN, KT, RN, RT, H, MU = 2e10, 1e10, 1e5, 6e4, 1e10, 0.839
 BRITTLE = dict(kn=KN, kt=KT, Rn=RN, Rt=RT, mu=MU)
 SOFT = dict(BRITTLE, H=H)
+BY_AREA = dict(kn=KN, kt=KT, bond_tension=RN, bond_cohesion=2 * RT, mu=MU)
 ISOTROPIC = dict(kn=KN, kt=KN, Rn=RN, Rt=RN, H=H, mu=MU)
 PADOVA_HARDENING = dict(Rc=2e5, compression=Parabolic(b1=1e14, b2=3e9), tension=Parabolic(b1=-1e14, b2=2e9, b3=1e3),
                         shear=Hyperbolic(b1=5e4, b2=3e-3, b3=1.0, d=0.5), mu=0.7)
@@ -21,6 +22,8 @@ LAWS = {
     "elasto-plastic": ElastoPlasticSoftening(**SOFT),
     "Padova, softening": NonlinearElastoPlastic(),
     "Padova, hardening": NonlinearElastoPlastic(**PADOVA_HARDENING),
+    "Coulomb": Coulomb(**BY_AREA),
+    "cohesive": Cohesive(bond_fracture_energy=0.75, **BY_AREA),
 }
 SOFTENING = [ElasticDamage, ElastoPlasticSoftening]
 TOLERANCE = 1e-9  # of the strength, in every comparison with a closed form
@@ -602,8 +605,9 @@ def test_each_padova_parameter_reaches_the_law(values, direct):
     assert any((got != plain).any() for got, plain in zip(found, NonlinearElastoPlastic(mu=MU).drive(un, ut)))
 
 
-@pytest.mark.parametrize("kind, good", [(ElasticBrittle, BRITTLE), (ElasticDamage, SOFT),
-                                        (ElastoPlasticSoftening, SOFT)])
+@pytest.mark.parametrize("kind, good", [
+    (ElasticBrittle, BRITTLE), (ElasticDamage, SOFT), (ElastoPlasticSoftening, SOFT), (Coulomb, BY_AREA),
+    (Cohesive, dict(BY_AREA, bond_fracture_energy=0.75))])
 def test_bad_parameters_are_named(kind, good):
     for name in good:
         for bad in (-1.0, math.nan, "stiff", None) + (() if name == "mu" else (0.0,)):

@@ -24,7 +24,7 @@ class Cohesive(LinearBondLaw):
 
     kn, kt  N/m, > 0      mu  friction within the bond and after breakage, >= 0
     bond_tension, bond_cohesion  Pa, bond_fracture_energy  J/m2, all > 0: of a bond that stands for 1 m2 of crack, see
-    Coulomb. A bond's elastic energy Rn^2/(2 kn) is a lower bound of G.
+    Coulomb, whose apex there is none of here. A bond's elastic energy Rn^2/(2 kn) is a lower bound of G.
     Raises ParameterError.
     """
 
@@ -36,7 +36,8 @@ class Cohesive(LinearBondLaw):
                             "work to break a bond in tension, over its area"), MU)
 
     def __init__(self, *, kn, kt, bond_tension, bond_cohesion, bond_fracture_energy, mu):
-        super().__init__(kn=kn, kt=kt, Rn=bond_tension, Rt=bond_cohesion, H=math.inf, mu=mu)
+        super().__init__(kn=kn, kt=kt, Rn=positive("bond_tension", bond_tension, "Pa"),
+                         Rt=positive("bond_cohesion", bond_cohesion, "Pa"), H=math.inf, mu=mu)
         self.end = 2 * positive("bond_fracture_energy", bond_fracture_energy, "J/m2") / self.Rn
 
     @property

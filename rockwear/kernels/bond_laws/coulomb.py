@@ -2,6 +2,7 @@
 import math
 
 from rockwear.kernels.bond_laws.base import KN, KT, MU, ElasticDomain, LinearBondLaw
+from rockwear.kernels.checks import positive
 from rockwear.kernels.parameter import Parameter, plausible
 
 stress = plausible(1e2, 1e11)
@@ -19,7 +20,8 @@ class Coulomb(LinearBondLaw):
 
     kn, kt  N/m, > 0      mu  friction within the bond and after breakage, >= 0
     bond_tension, bond_cohesion  Pa, > 0: Rn and Rt (N) of a bond that stands for 1 m2 of crack; `scaled` by the area of
-    a bond gives its own, so that the rock's strength does not depend on the size of its particles.
+    a bond gives its own, so that the rock's strength does not depend on the size of its particles. With a cohesion below
+    mu times the tension, the cone ends in its apex: the bond breaks in tension at Rt / mu.
     Raises ParameterError.
     """
 
@@ -28,7 +30,8 @@ class Coulomb(LinearBondLaw):
     parameters = (KN, KT, TENSION, COHESION, MU)
 
     def __init__(self, *, kn, kt, bond_tension, bond_cohesion, mu):
-        super().__init__(kn=kn, kt=kt, Rn=bond_tension, Rt=bond_cohesion, H=math.inf, mu=mu)
+        super().__init__(kn=kn, kt=kt, Rn=positive("bond_tension", bond_tension, "Pa"),
+                         Rt=positive("bond_cohesion", bond_cohesion, "Pa"), H=math.inf, mu=mu)
 
     def elastic_domain(self, bond, Fn=0.0, Ft=0.0):
         return ElasticDomain(self.kn, self.kt, self.Rn, self.Rt, -self.mu)
