@@ -2,7 +2,7 @@
 import math
 
 import numpy as np
-from yade import O
+from yade import O, Vector3
 
 from rockwear.engines.bond_log import INTACT, SEPARATED, BondLog, Crack
 
@@ -10,6 +10,7 @@ LOOK_PERIOD = 10
 """Steps between looks at the bonds that slip or soften."""
 SHARES = 8
 """The others are looked at in so many turns."""
+UNSLIPPED = Vector3.Zero
 UNBREAKABLE = 1e29
 """Strength (N) from which a bond is not to break at all."""
 
@@ -64,7 +65,9 @@ class CpmBonds(BondLog):
         self.quiet, self.active = {}, {}
         for n in np.flatnonzero(self.status == INTACT).tolist():
             interaction = O.interactions[tuple(self.pairs[n].tolist())]
-            self.quiet[n] = interaction, interaction.geom, interaction.phys
+            phys = interaction.phys
+            # YADE gives this vector by reference: it is what it is now at any time.
+            self.quiet[n] = interaction, interaction.geom, phys, phys.epsTPl
         if self.strains is not None:
             self._set_strains(*self.strains)
             self.strains = None
@@ -72,9 +75,9 @@ class CpmBonds(BondLog):
 
     def _set_strains(self, omegas, totals, plastics):
         for n, omega, total, plastic in zip(list(self.quiet), omegas.tolist(), totals.tolist(), plastics.tolist()):
-            _, geom, phys = self.quiet[n]
+            _, geom, phys, held = self.quiet[n]
             for k in range(3):
-                phys.epsT[k], phys.epsTPl[k] = total[k], plastic[k]
+                phys.epsT[k], held[k] = total[k], plastic[k]
             if omega or any(plastic):
                 phys.setDamage(omega)
                 self.active[n] = self.quiet.pop(n), omega, self._shear(geom, phys)
@@ -89,20 +92,20 @@ class CpmBonds(BondLog):
         """Bring dissipation and status of these bonds up to date."""
         for n in list(numbers):
             if n in self.active:
-                (_, geom, phys), omega, before = self.active[n]
-                if phys.omega == omega and phys.epsTPl[0] == before[2]:
+                contact, omega, before = self.active[n]
+                if contact[2].omega == omega and contact[3] == before[2]:
                     continue
             else:
-                (_, geom, phys), omega, before = self.quiet[n], 0.0, None
-                if phys.omega == 0.0 and phys.epsTPl[0] == 0.0:
+                contact, omega, before = self.quiet[n], 0.0, None
+                if contact[2].omega == 0.0 and contact[3] == UNSLIPPED:
                     continue
                 self.active[n] = self.quiet.pop(n), 0.0, None
-            self._account(n, geom, phys, omega, before)
+            self._account(n, contact[1], contact[2], omega, before)
 
     @staticmethod
     def _shear(geom, phys):
-        """Tangential displacement (m), force (N) on the second body, in the law's sign, and a measure of slip."""
-        return phys.epsT * phys.refLength, _carried(-phys.shearForce, geom.normal), phys.epsTPl[0]
+        """Tangential displacement (m), force (N) on the second body, in the law's sign, and the strain that slipped."""
+        return phys.epsT * phys.refLength, _carried(-phys.shearForce, geom.normal), Vector3(phys.epsTPl)
 
     def _account(self, n, geom, phys, omega_before, before):
         law, omega, normal, length = self.laws[n], phys.omega, geom.normal, phys.refLength
@@ -128,9 +131,10 @@ class CpmBonds(BondLog):
             self._break(n)
             return
         plastic = (total - elastic) / length
+        contact = self.active[n][0]
         for k in range(3):
-            phys.epsTPl[k] = plastic[k]
-        self.active[n] = self.active[n][0], omega, (total, force, plastic[0])
+            contact[3][k] = plastic[k]
+        self.active[n] = contact, omega, (total, force, plastic)
 
     def _break(self, n):
         interaction = self.active[n][0][0]
@@ -160,9 +164,11 @@ class CpmBonds(BondLog):
         for n in np.flatnonzero(~kept[self.pairs].all(axis=1)).tolist():
             self._separate(n)
         self.quiet, self.active = dict(sorted(self.quiet.items())), dict(sorted(self.active.items()))
-        for n, ((_, _, phys), omega, before) in self.active.items():
+        for n, (contact, omega, _) in self.active.items():
+            _, geom, phys, _ = contact
             if omega:
                 phys.setDamage(omega)
+            self.active[n] = contact, omega, self._shear(geom, phys)
 
     def expand(self, numbers, growth, overlap):
         """Radii have grown: r_i + r_j of bonds `numbers` by `growth`, their reference overlap by `overlap` (m).
@@ -173,11 +179,15 @@ class CpmBonds(BondLog):
         for n, longer, shift in zip(numbers.tolist(), growth.tolist(), overlap.tolist()):
             if self.status[n] == SEPARATED:
                 continue
-            _, geom, phys = self.active[n][0] if n in self.active else self.quiet[n]
+            _, geom, phys, _ = self.active[n][0] if n in self.active else self.quiet[n]
             phys.refPD += shift
             pressing = phys.normalForce.dot(geom.normal)
             work += (longer - shift) * (pressing + 0.5 * phys.kn * (longer - shift))
         return work
+
+    def _intact(self):
+        """{number: (interaction, geom, phys, its epsTPl)} of all bonds."""
+        return {**self.quiet, **{n: contact for n, (contact, _, _) in self.active.items()}}
 
     def softening(self):
         """(m,) from 0, a bond in its initial state, to 1, a broken one."""
@@ -190,14 +200,13 @@ class CpmBonds(BondLog):
         """Strain energy (J) of all bonds, sum of Fn^2/2kn + Ft^2/2kt with the secant kn of softened ones."""
         self.look_at_all()
         energy = []
-        for n, (_, geom, phys) in (*self.quiet.items(), *((n, held) for n, (held, _, _) in self.active.items())):
+        for _, _, phys, _ in self._intact().values():
             kn = phys.kn * (1.0 - phys.omega if phys.epsN > 0.0 else 1.0)
             energy.append(0.5 * (phys.normalForce.squaredNorm() / kn + phys.shearForce.squaredNorm() / phys.ks))
         return math.fsum(energy)
 
     def state(self):
-        intact = {**self.quiet, **{n: held for n, (held, _, _) in self.active.items()}}
-        bonds = [intact[n][2] for n in sorted(intact)]
+        bonds = [contact[2] for _, contact in sorted(self._intact().items())]
         return {**super().state(), "dissipated": self.dissipated.copy(), "by_slip": self.by_slip.copy(),
                 "turn": self.turn, "omega": np.array([phys.omega for phys in bonds], float),
                 "strain": np.array([phys.epsT for phys in bonds], float).reshape(-1, 3),

@@ -5,7 +5,8 @@ import numpy as np
 import pytest
 
 from rockwear.kernels.bond_laws import (
-    Cohesive, Coulomb, ElasticBrittle, ElasticDamage, ElastoPlasticSoftening, Hyperbolic, NonlinearElastoPlastic, Parabolic)
+    Cohesive, Coulomb, ElasticBrittle, ElasticDamage, ElastoPlasticSoftening, Hyperbolic, NonlinearElastoPlastic,
+    Parabolic)
 from rockwear.kernels.checks import ParameterError
 
 KN, KT, RN, RT, H, MU = 2e10, 1e10, 1e5, 6e4, 1e10, 0.839

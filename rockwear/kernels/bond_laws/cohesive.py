@@ -24,7 +24,7 @@ class Cohesive(LinearBondLaw):
 
     kn, kt  N/m, > 0      mu  friction within the bond and after breakage, >= 0
     bond_tension, bond_cohesion  Pa, bond_fracture_energy  J/m2, all > 0: of a bond that stands for 1 m2 of crack, see
-    Coulomb, whose apex there is none of here. A bond's elastic energy Rn^2/(2 kn) is a lower bound of G.
+    Coulomb; a low cohesion does not cut the tension here. A bond's elastic energy Rn^2/(2 kn) is a lower bound of G.
     Raises ParameterError.
     """
 

@@ -20,8 +20,8 @@ class Coulomb(LinearBondLaw):
 
     kn, kt  N/m, > 0      mu  friction within the bond and after breakage, >= 0
     bond_tension, bond_cohesion  Pa, > 0: Rn and Rt (N) of a bond that stands for 1 m2 of crack; `scaled` by the area of
-    a bond gives its own, so that the rock's strength does not depend on the size of its particles. With a cohesion below
-    mu times the tension, the cone ends in its apex: the bond breaks in tension at Rt / mu.
+    a bond gives its own, so that the rock's strength does not depend on the size of its particles. With a cohesion
+    below mu times the tension, the cone ends in its apex: the bond breaks in tension at Rt / mu.
     Raises ParameterError.
     """
 

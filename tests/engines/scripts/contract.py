@@ -20,7 +20,6 @@ from yade import FrictViscoMat, NewtonIntegrator, O, Subdomain
 import rockwear.engines
 from rockwear.engines import access, base
 from rockwear.engines.base import Engine
-from rockwear.engines.bonds import Bonds
 from rockwear.engines.conduction import Conduction
 from rockwear.engines.confinement import Membrane, PressedEnds
 from rockwear.engines.damping import BackgroundDamping
@@ -42,7 +41,8 @@ from rockwear.engines.velocity_increment import VelocityIncrement
 from rockwear.engines.wear import Wear
 from rockwear.engines.wear_profile import WearProfile
 from rockwear.kernels.archard import Hardness
-from rockwear.kernels.bond_laws import ElasticBrittle, ElasticDamage, ElastoPlasticSoftening, NonlinearElastoPlastic
+from rockwear.kernels.bond_laws import (
+    Cohesive, ElasticBrittle, ElasticDamage, ElastoPlasticSoftening, NonlinearElastoPlastic)
 from rockwear.kernels.conduction import HeatNetwork
 from rockwear.kernels.erosion import Erosion
 from rockwear.kernels.packing import contacts
@@ -107,7 +107,7 @@ class World(Scene):
 
     def build(self):
         O.reset()
-        yade_scene.put_rock_materials(mu=self.law.mu, loose=self.loose)
+        yade_scene.put_rock_materials(mu=self.law.mu, loose=self.loose, yade_law=self.law.yade_law)
         yade_scene.put_tool_material(mu=0.3, contact_damping=0.5)
         yade_scene.put_rock(self.rock)
         self.loop(rock=self.law, tool=self.tool_law, **self.options)
@@ -132,7 +132,7 @@ class World(Scene):
 
     def _make_engines(self):
         rock = self.rock
-        self.bonds = Bonds(pairs=rock.pairs, law=self.law, clock=lambda: self.time)
+        self.bonds = yade_scene.bonds_engine(rock, self.law, lambda: self.time)
         self.increment = VelocityIncrement(masses=rock.masses, inertias=rock.inertias, radii=rock.radii,
                                            fixed=rock.fixed)
         self.rock_friction = RockFriction(bonds=self.bonds, motion=self.increment, period=3)
@@ -340,6 +340,12 @@ class NowhereLinear(Tension):
     law = NonlinearElastoPlastic()
 
 
+class Softening(Tension):
+    """The same with bonds that YADE's concrete model carries: at the checkpoint some soften and some slip."""
+
+    law = Cohesive(kn=KN, kt=KT, mu=MU, bond_tension=RN, bond_cohesion=0.3 * RN, bond_fracture_energy=1.0)
+
+
 class Spinning(World):
     """A chip of four bonded spheres spins in space."""
 
@@ -352,7 +358,7 @@ class Spinning(World):
         places = 0.95 * radius / math.sqrt(2) * np.array([(1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1)])
         masses = np.full(4, 2500 * 4 / 3 * math.pi * radius**3)
         self.rock = SimpleNamespace(count=4, positions=places, radii=np.full(4, radius), masses=masses,
-                                    inertias=0.4 * masses * radius**2, fixed=np.zeros(4, bool),
+                                    inertias=0.4 * masses * radius**2, fixed=np.zeros(4, bool), laws=None,
                                     pairs=contacts(places, np.full(4, radius), 0.0))
 
     def _engines(self):
@@ -390,7 +396,7 @@ class HeatAlone(World):
         """Nothing of YADE's to prepare."""
 
 
-WORLDS = (ParticleCut, FacetCut, Sliding, Tension, Confined, NowhereLinear, Spinning, HeatAlone)
+WORLDS = (ParticleCut, FacetCut, Sliding, Tension, Confined, NowhereLinear, Softening, Spinning, HeatAlone)
 
 
 def concrete_engines():
