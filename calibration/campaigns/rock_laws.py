@@ -1,0 +1,278 @@
+"""What bond laws and rock properties do to a rock, and whether a rock stays the same as its discs become finer.
+
+    python3 -m calibration.campaigns.rock_laws DIR [laws|resolution|relations ...] [--read]
+
+Two runs at a time, a folder a run; finished runs are not repeated, so that an interrupted campaign resumes. --read
+starts no run and evaluates those that exist. Writes into DIR rock_laws.md (tables), rock_laws.csv, resolution.png,
+relations.json, relations.png and provenance.json.
+"""
+import csv
+import json
+import math
+import sys
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+
+from calibration import generated
+from calibration.campaigns.runs import RunFailed, Runs
+from calibration.laboratory.envelope import fitted
+from rockwear.kernels.checks import ParameterError
+from rockwear.report import palette, plots
+from rockwear.report.folder import RunFolder
+
+UNIAXIAL, CONFINED, TOUGHNESS = (f"yade_scripts/{name}.py" for name in ("uniaxial", "triaxial", "toughness"))
+CONFINEMENTS = 0.0, 5e6, 10e6
+
+ROCK = dict(kn=20e9, kt=8e9, mu=0.8, bond_law="cohesive", bond_tension=7e6, bond_cohesion=20e6,
+            bond_fracture_energy=30.0)
+"""A sandstone to begin with, of softening bonds; all discs of 1 to 1.5 mm."""
+GRAINS = dict(ROCK, grain_edge=3e-3)
+BOX = dict(width=0.08, height=0.04)
+"""Compressed along its length; 650 discs."""
+SPEED, PULL = 0.04, 0.02
+"""Of each platen, m/s."""
+SIZE = 0.08
+"""Of the toughness specimen, m."""
+
+LAWS = {
+    "cohesive": ROCK,
+    "fracture energy 10 J/m²": dict(ROCK, bond_fracture_energy=10.0),
+    "fracture energy 100 J/m²": dict(ROCK, bond_fracture_energy=100.0),
+    "cohesion doubled": dict(ROCK, bond_cohesion=40e6),
+    "friction 0.4": dict(ROCK, mu=0.4),
+    "Weibull modulus 4": dict(ROCK, weibull_modulus=4.0),
+    "Weibull modulus 2": dict(ROCK, weibull_modulus=2.0),
+    "bonding gap 0": dict(ROCK, bonding_gap=0.0),
+    "bonding gap 0.3 mm": dict(ROCK, bonding_gap=3e-4),
+    "no rotation": dict(ROCK, rotation="blocked"),
+    "Coulomb, brittle": {name: value for name, value in dict(ROCK, bond_law="coulomb").items()
+                         if name != "bond_fracture_energy"},
+    "grains, edge 2 mm": dict(ROCK, grain_edge=2e-3),
+    "grains, edge 3 mm": GRAINS,
+    "grains, edge 4 mm": dict(ROCK, grain_edge=4e-3),
+    "grains 3 mm, friction 0.4": dict(GRAINS, mu=0.4),
+    "grains 3 mm, Weibull modulus 3": dict(GRAINS, weibull_modulus=3.0),
+    "grains 3 mm, Coulomb, brittle": {name: value for name, value in dict(GRAINS, bond_law="coulomb").items()
+                                      if name != "bond_fracture_energy"},
+}
+"""One change at a time."""
+
+FINENESS = {1.25: 1.0, 0.6: 0.48, 0.3: 0.24}
+"""{mean radius, mm: factor on all lengths of the packing and of its grains}."""
+
+
+def at_size(values, factor):
+    """Values of a rock whose packing is `factor` times as coarse; stresses and the fracture energy are the rock's."""
+    lengths = {"radius_min": 1e-3, "radius_max": 1.5e-3, "bonding_gap": 1e-4,
+               **{name: values[name] for name in ("bonding_gap", "grain_edge") if name in values}}
+    return {**values, **{name: float(f"{factor * length:.6g}") for name, length in lengths.items()}}
+
+
+CASES = {
+    "laws": ({case: values for case, values in LAWS.items()}, (1, 2, 3), CONFINEMENTS),
+    "resolution": ({f"{kind}, r = {radius:g} mm": at_size(values, factor) for kind, values in
+                    (("discs", ROCK), ("grains", GRAINS)) for radius, factor in FINENESS.items()}, (1, 2, 3, 4, 5),
+                   (0.0,)),
+    "relations": ({f"kt/kn = {ratio:g}, gap {gap:g} mm": dict(ROCK, kt=ratio * 20e9, bonding_gap=1e-3 * gap)
+                   for gap in (0.0, 0.1, 0.2) for ratio in (0.05, 0.2, 0.4, 0.7, 1.0)}, (1, 2, 3), (0.0,)),
+}
+"""{campaign: (cases, seeds, confinements)}."""
+QUANTITIES = {"E": (1e-9, "GPa"), "nu": (1, ""), "UCS": (1e-6, "MPa"), "tension": (1e-6, "MPa"), "ratio": (1, ""),
+              "phi": (1, "°"), "m_i": (1, ""), "K": (1e-6, "MPa√m"), "G": (1, "J/m²")}
+HEADS = {"E": "E, GPa", "nu": "ν", "UCS": "UCS, MPa", "tension": "σt, MPa", "ratio": "UCS/σt", "phi": "φ, °",
+         "m_i": "m_i", "K": "K_IC, MPa√m", "G": "G_f, J/m²"}
+
+
+def tests(values, confinements, seed, tough):
+    """{test: (script, parameters)} of one packing of a rock."""
+    blocked = values.get("rotation")
+    common = dict(values, seed=seed, report="false", snapshot_period=1)
+    found = {f"confined {1e-6 * confinement:g}": (CONFINED, dict(common, **BOX, speed=SPEED, confinement=confinement))
+             for confinement in confinements}
+    found["tension"] = UNIAXIAL, dict(common, **BOX, speed=PULL, test="tension")
+    if tough and not blocked:
+        found["toughness"] = TOUGHNESS, dict(common, size=SIZE)
+    return found
+
+
+def folder_of(case, test, seed):
+    """Name of a run's folder."""
+    return "".join(c if c.isalnum() or c in "-." else "_" for c in f"{case}-{test}-{seed}")
+
+
+def start(runs, campaign):
+    """Queue a campaign, seed by seed. -> {(case, test, seed): Future of its RunFolder}."""
+    cases, seeds, confinements = CASES[campaign]
+    return {(case, test, seed): runs.start(f"{campaign}/{folder_of(case, test, seed)}", script, **values)
+            for seed in seeds for case, rock in cases.items()
+            for test, (script, values) in tests(rock, confinements, seed, campaign != "relations").items()}
+
+
+def measured(folder, campaign):
+    """{case: {quantity: (seeds,) values}} of the runs that exist."""
+    cases, seeds, confinements = CASES[campaign]
+    found = {}
+    for case, rock in cases.items():
+        rows = [row for seed in seeds if (row := _of_packing(folder / campaign, case, rock, confinements, seed))]
+        if rows:
+            found[case] = {name: np.array([row.get(name, math.nan) for row in rows]) for name in QUANTITIES}
+            found[case].update(_envelope(rows))
+    return found
+
+
+def _of_packing(folder, case, rock, confinements, seed):
+    runs = {test: RunFolder(folder / folder_of(case, test, seed)) for test in tests(rock, confinements, seed, True)
+            if (folder / folder_of(case, test, seed) / "summary.json").exists()}
+    unconfined, tension = runs.get("confined 0"), runs.get("tension")
+    if unconfined is None or tension is None:
+        return None
+    row = {"E": unconfined.result("youngs_modulus"), "nu": unconfined.result("poissons_ratio"),
+           "UCS": unconfined.result("peak_stress"), "tension": tension.result("tensile_strength")}
+    row["ratio"] = row["UCS"] / row["tension"]
+    if "toughness" in runs:
+        row.update(K=runs["toughness"].result("fracture_toughness"), G=runs["toughness"].result("fracture_energy"))
+    row["points"] = [{"sigma3": 1e6 * float(test.split()[1]), "peak_stress": run.result("peak_stress")}
+                     for test, run in runs.items() if test.startswith("confined")]
+    return row
+
+
+def _envelope(rows):
+    """phi and m_i of all packings together, with half of their 95 % intervals as scatter."""
+    points = [point for row in rows for point in row["points"]]
+    if len({point["sigma3"] for point in points}) < 3:
+        return {}
+    try:
+        fit = fitted(points, [row["tension"] for row in rows])
+    except ParameterError:
+        return {}
+    found = {"phi": fit["mohr_coulomb"]["friction_angle"]}
+    if "refused" not in fit["hoek_brown"]:
+        found["m_i"] = fit["hoek_brown"]["m_i"]
+    return {name: (part["value"], part["half_width"]) for name, part in found.items()}
+
+
+def cell(name, values):
+    """Mean ± scatter of a quantity."""
+    scale = QUANTITIES[name][0]
+    if isinstance(values, tuple):
+        return f"{values[0] * scale:.3g} ± {values[1] * scale:.2g}"
+    values = values[np.isfinite(values)] * scale
+    if not len(values):
+        return "–"
+    return f"{values.mean():.3g}" + (f" ± {values.std(ddof=1):.2g}" if len(values) > 1 else "")
+
+
+def table(found):
+    """Lines of Markdown: a row a case."""
+    columns = [name for name in QUANTITIES if any(cell(name, values[name]) not in ("–", "nan ± nan")
+                                                  for values in found.values())]
+    return generated.table(["", *(HEADS[name] for name in columns)],
+                           [[case, *(cell(name, values[name]) for name in columns)] for case, values in found.items()])
+
+
+def relations(found):
+    """[{kt_over_kn, gap (m), E/kn, nu, UCS and tension over the tensile stress of bonds: mean, deviation}]."""
+    cases = CASES["relations"][0]
+    return [{"kt_over_kn": cases[case]["kt"] / cases[case]["kn"], "bonding_gap": cases[case]["bonding_gap"],
+             **{f"{name}{over}": [float(np.mean(values[name]) / unit), float(np.std(values[name]) / unit)]
+                for name, over, unit in (("E", "_over_kn", cases[case]["kn"]), ("nu", "", 1.0),
+                                         ("UCS", "_over_bond_tension", cases[case]["bond_tension"]),
+                                         ("tension", "_over_bond_tension", cases[case]["bond_tension"]))}}
+            for case, values in found.items()]
+
+
+def draw_relations(rows):
+    """Dimensionless relations [Rojek 2014, 5.2]: E and nu over kt/kn, strengths over the bond's; error bars are the
+    scatter of packings."""
+    names = {"E_over_kn": "E/kn", "nu": "ν", "UCS_over_bond_tension": "UCS/σb", "tension_over_bond_tension": "σt/σb"}
+    figure, panels = plots.canvas(10, 7, 2, 2)
+    gaps = sorted({row["bonding_gap"] for row in rows})
+    for axes, (name, label) in zip(np.ravel(panels), names.items()):
+        for gap, colour in zip(gaps, palette.OTHER_LINES):
+            chosen = [row for row in rows if row["bonding_gap"] == gap]
+            mean, deviation = np.array([row[name] for row in chosen]).T
+            axes.errorbar([row["kt_over_kn"] for row in chosen], mean, deviation, fmt="o-", color=colour, capsize=3,
+                          label=f"bonding gap {1e3 * gap:g} mm")
+        axes.set(xlabel="kt/kn", ylabel=label)
+    np.ravel(panels)[0].legend()
+    return figure
+
+
+def draw_resolution(found):
+    """Properties over the mean radius, each over its mean at the finest."""
+    figure, panels = plots.canvas(10, 4, 1, 2, sharey=True)
+    for axes, kind in zip(panels, ("discs", "grains")):
+        cases = {radius: found[f"{kind}, r = {radius:g} mm"] for radius in FINENESS
+                 if f"{kind}, r = {radius:g} mm" in found}
+        for name, colour in zip(("UCS", "tension", "K", "E"), palette.OTHER_LINES):
+            known = {radius: values[name][np.isfinite(values[name])] for radius, values in cases.items()}
+            known = {radius: values for radius, values in known.items() if len(values)}
+            if known:
+                finest = known[min(known)].mean()
+                axes.errorbar(list(known), [values.mean() / finest for values in known.values()],
+                              [values.std() / finest for values in known.values()], fmt="o-", color=colour, capsize=3,
+                              label=HEADS[name].split(",")[0])
+        axes.axhspan(0.95, 1.05, color="#e8f0e4", zorder=-5)
+        axes.set(xscale="log", xlabel="mean radius of the discs, mm", title=kind)
+        axes.set_xticks(list(FINENESS), [f"{radius:g}" for radius in FINENESS])
+        axes.minorticks_off()
+    panels[0].set_ylabel("over the mean of the finest discs")
+    panels[0].legend()
+    return figure
+
+
+TITLES = {"laws": "What bond laws and rock properties do", "resolution": "The same rock of finer discs",
+          "relations": "Dimensionless relations"}
+
+
+def write(folder):
+    """Tables and figures of all runs that exist. -> the tables, in Markdown."""
+    lines, files, rows = [], [folder / "rock_laws.csv"], []
+    found = {campaign: measured(folder, campaign) for campaign in CASES}
+    with matplotlib.rc_context(plots.STYLE):
+        for campaign, cases in found.items():
+            if not cases:
+                continue
+            counts = {len(values["UCS"]) for values in cases.values()}
+            lines += [f"## {TITLES[campaign]}", "", f"Mean ± standard deviation of {min(counts)} to {max(counts)} "
+                      "packings (φ and m_i: of all together, with half the 95 % interval).", "", *table(cases)]
+            rows += [[campaign, case, name, *values] for case, quantities in cases.items()
+                     for name, values in quantities.items() if not isinstance(values, tuple)]
+        if found["relations"]:
+            data = relations(found["relations"])
+            files += [folder / "relations.json", folder / "relations.png"]
+            files[-2].write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
+            draw_relations(data).savefig(files[-1])
+        if found["resolution"]:
+            files.append(folder / "resolution.png")
+            draw_resolution(found["resolution"]).savefig(files[-1])
+    with open(files[0], "w", encoding="utf-8", newline="") as file:
+        csv.writer(file).writerows([["campaign", "case", "quantity", "packings …"], *rows])
+    generated.record(*files)
+    return generated.write_page(folder / "rock_laws.md", lines)
+
+
+def main(folder, words):
+    """-> exit code: 1 where a run failed."""
+    failed = 0
+    if "--read" not in words:
+        with Runs(folder, keep=True) as runs:
+            for campaign in words or list(CASES):
+                for (case, test, seed), job in start(runs, campaign).items():
+                    try:
+                        job.result()
+                        print(f"{campaign}: {case}, {test}, packing {seed}", flush=True)
+                    except RunFailed as error:
+                        print(error, file=sys.stderr, flush=True)
+                        failed = 1
+    print(write(folder))
+    return failed
+
+
+if __name__ == "__main__":
+    unknown = [word for word in sys.argv[2:] if word not in (*CASES, "--read")]
+    if len(sys.argv) < 2 or unknown:
+        sys.exit(f"usage: python3 -m calibration.campaigns.rock_laws DIR [{'] ['.join(CASES)}] [--read]")
+    sys.exit(main(Path(sys.argv[1]), sys.argv[2:]))
