@@ -268,7 +268,7 @@ class SpecimenOutput(Output):
                 **{f"rock_{name}": value for name, value in scene.rock.report().items()}}
 
     def _damped(self):
-        return O.energy["nonviscDamp"] if "nonviscDamp" in O.energy.keys() else 0.0
+        return access.damped_energy()
 
     def balances(self):
         """The energy balance, J per metre of thickness: the work on the specimen, where it went, and what the balance

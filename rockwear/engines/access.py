@@ -74,3 +74,8 @@ def rock_positions(rock):
     """(n, d) m of the specimen's particles in YADE now, by its one bulk read."""
     values = np.fromiter(Subdomain().getStateValuesFromIds(list(range(rock.count))), float)
     return values.reshape(rock.count, 13)[:, :rock.positions.shape[1]]
+
+
+def damped_energy():
+    """J that non-viscous damping has taken since YADE tracks energy."""
+    return O.energy["nonviscDamp"] if "nonviscDamp" in O.energy.keys() else 0.0

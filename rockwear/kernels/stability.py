@@ -12,7 +12,7 @@ TOLERANCE = 1e-6  # of the largest eigenvalue; the time step is made smaller by 
 
 
 def critical_time_step(*, positions, radii, masses, inertias, bonds, kn, kt, fixed=(), damping_ratio=0.0, ground=None,
-                       cn=0.0, ratcheting_free=False):
+                       cn=0.0, ct=0.0, ratcheting_free=False):
     """Largest stable time step in s, 2/Ω_max (√(1 + ξ²) − ξ) [Rojek 2003, eq. 3.36-3.37].
 
     Ω_max² is the largest eigenvalue of M^-½ K M^-½. K = Σ kn n nᵀ + kt t tᵀ, with the rotations: a bond from i to j
@@ -29,7 +29,7 @@ def critical_time_step(*, positions, radii, masses, inertias, bonds, kn, kt, fix
     kn, kt     normal and tangential stiffness in N/m, one for all bonds or (m,)
     fixed      indices of particles that do not move
     damping_ratio    ξ, fraction of critical damping at Ω_max, for an assembly with equal damping of all modes
-    cn         normal dashpots of the bonds in N s/m, one for all bonds or (m,); see below
+    cn, ct     normal and tangential dashpots of the bonds in N s/m, one for all bonds or (m,); see below
     ratcheting_free    True for YADE's default measure of the shear displacement
                (Ig2_Sphere_Sphere_ScGeom.avoidGranularRatcheting); see below
     ground     (nodes, normals, kn, kt) or (nodes, normals, kn, kt, cn): contacts of particles `nodes` (g,) with a body
@@ -41,7 +41,7 @@ def critical_time_step(*, positions, radii, masses, inertias, bonds, kn, kt, fix
     Dashpots. YADE's laws use the velocity of half a step before, M (v⁺ − v⁻)/Δt = −K x − C v⁻, so that a mode of the
     form (−1)ᵏ grows as soon as
 
-        4 M − Δt² K − 2 Δt C     (C = Σ cn n nᵀ)
+        4 M − Δt² K − 2 Δt C     (C = Σ cn n nᵀ + ct t tᵀ)
 
     is not positive definite. The returned step is this limit: a dashpot acts like a spring of 2 cn/Δt. For a single
     mode it equals the formula above; for assemblies with and without dashpots it is exact and replaces it.
@@ -64,7 +64,8 @@ def critical_time_step(*, positions, radii, masses, inertias, bonds, kn, kt, fix
     r = _positive_each("radii", radii, n, "m")
     mass, inertia = _positive_each("masses", masses, n, "kg"), _positive_each("inertias", inertias, n, "kg m2")
     i, j = _indices("bonds", bonds, n, 2).T
-    kn, kt, cn = _each_bond("kn", kn, len(i)), _each_bond("kt", kt, len(i)), _each_bond("cn", cn, len(i), "N s/m")
+    kn, kt = _each_bond("kn", kn, len(i)), _each_bond("kt", kt, len(i))
+    cn, ct = _each_bond("cn", cn, len(i), "N s/m"), _each_bond("ct", ct, len(i), "N s/m")
     damping_ratio = not_negative("damping_ratio", damping_ratio)
     fixed = _indices("fixed", fixed, n)
 
@@ -77,7 +78,7 @@ def critical_time_step(*, positions, radii, masses, inertias, bonds, kn, kt, fix
         alpha = (r[i] + r[j]) / distance
         kt = alpha * kt
         arms = [np.sqrt(np.maximum(arm, 0.0) * radius / alpha) for arm, radius in zip(arms, (r[i], r[j]))]
-    springs, dashpots = _rows(n, i, j, normal, *arms, kn, kt), _dashpot_rows(n, i, j, normal, cn)
+    springs, dashpots = _rows(n, i, j, normal, *arms, kn, kt), _dashpot_rows(n, i, j, normal, *arms, cn, ct)
     if ground is not None:
         grounded = _ground_rows(ground, r, d)
         springs, dashpots = sparse.vstack([springs, grounded[0]]), sparse.vstack([dashpots, grounded[1]])
@@ -136,11 +137,10 @@ def _rows(n, i, j, normal, arm_i, arm_j, kn, kt):
     return sparse.csr_matrix((entries.ravel(), columns.ravel(), starts), shape=(m * len(directions), n * dofs))
 
 
-def _dashpot_rows(n, i, j, normal, cn):
-    """The same for the closing velocity times √cn, of the contacts that have a dashpot."""
-    damped = np.flatnonzero(cn)
-    nothing = np.zeros(len(damped))
-    return _rows(n, i[damped], j[damped], normal[damped], nothing, nothing, cn[damped], nothing)
+def _dashpot_rows(n, i, j, normal, arm_i, arm_j, cn, ct):
+    """The same for the relative velocity times √cn and √ct, of the contacts that have a dashpot."""
+    damped = np.flatnonzero(cn + ct)
+    return _rows(n, *(each[damped] for each in (i, j, normal, arm_i, arm_j, cn, ct)))
 
 
 def _ground_rows(ground, r, d):
@@ -153,7 +153,7 @@ def _ground_rows(ground, r, d):
     kn, kt, cn = (_each_bond("ground", value, len(nodes)) for value in (kn, kt, cn))
     body, normals = np.full(len(nodes), n), normals / length[:, None]
     rows = (_rows(n + 1, nodes, body, normals, r[nodes], np.zeros(len(nodes)), kn, kt),
-            _dashpot_rows(n + 1, nodes, body, normals, cn))
+            _dashpot_rows(n + 1, nodes, body, normals, r[nodes], np.zeros(len(nodes)), cn, np.zeros(len(nodes))))
     return [each[:, : each.shape[1] // (n + 1) * n] for each in rows]
 
 

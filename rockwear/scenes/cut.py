@@ -4,6 +4,7 @@ from yade import O
 
 from rockwear.engines import access
 from rockwear.engines.base import RunEnded
+from rockwear.engines.bond_dashpots import BondDashpots
 from rockwear.engines.damping import BackgroundDamping
 from rockwear.engines.energy_guard import EnergyGuard
 from rockwear.engines.path_follower import PathFollower
@@ -29,19 +30,22 @@ class Cut(Scene):
 
     rock: a specimen of model.rock; bond_law: of kernels.bond_laws, which also gives the stiffness and friction of
     contacts in the rock; tool: a ToolAssembly; programme: a Programme; accuracy: scenes.accuracy.Accuracy; heat,
-    expansion, gravity: of scenes.physics, or None; background_damping: 1/s; time_scale: mechanical over physical
-    rate; depth_of_cut: m, to which depth the tool must reach to cut; notes: {name: (value, unit)} of further results;
+    expansion, gravity: of scenes.physics, or None; background_damping: 1/s; non_viscous_damping: of each force;
+    bond_damping: of the critical damping of bonds, in the plane; time_scale: mechanical over physical rate;
+    depth_of_cut: m, to which depth the tool must reach to cut; notes: {name: (value, unit)} of further results;
     first_temperature: K of a tool without heat.
 
     In the plane the balances count per metre of thickness.
     """
 
     def __init__(self, *, rock, bond_law, tool, programme, accuracy, depth_of_cut, first_temperature, heat=None,
-                 expansion=None, gravity=None, background_damping=0.0, time_scale=1.0, notes=None):
+                 expansion=None, gravity=None, background_damping=0.0, non_viscous_damping=0.0, bond_damping=0.0,
+                 time_scale=1.0, notes=None):
         super().__init__()
         self.rock, self.bond_law, self.tool, self.programme, self.accuracy = rock, bond_law, tool, programme, accuracy
         self.heat_model, self.expansion_model, self.gravity = heat, expansion, gravity
         self.background_damping, self.time_scale = background_damping, time_scale
+        self.non_viscous_damping, self.bond_damping = non_viscous_damping, bond_damping
         self.depth_of_cut, self.first_temperature, self.notes = depth_of_cut, first_temperature, notes or {}
         self.units = tool.units
         self.in_plane = self.units is PLANE
@@ -51,7 +55,7 @@ class Cut(Scene):
             rock.bond(bond_law)
         programme.attach(self)
         if self.in_plane:
-            self.bonded_step, self.contact_step = plane_steps(rock, tool.contact_law)
+            self.bonded_step, self.contact_step = plane_steps(rock, tool.contact_law, bond_damping)
         else:
             self.bonded_step, self.contact_step = space_steps(rock, bond_law, tool.contact_law)
         self.critical_step = min(self.bonded_step, self.contact_step)
@@ -75,7 +79,9 @@ class Cut(Scene):
                                       yade_law=self.bond_law.yade_law)
         yade_scene.put_tool_material(mu=contact.mu, contact_damping=contact.damping)
         yade_scene.put_rock(self.rock)
-        self.tool.put_loop(rock=self.bond_law, tool=contact, ratcheting_free=self.ratcheting_free)
+        self.tool.put_loop(rock=self.bond_law, tool=contact, ratcheting_free=self.ratcheting_free,
+                           damping=self.non_viscous_damping)
+        O.trackEnergy = self.non_viscous_damping > 0
         self._make_engines()
         yade_scene.make_bonds(self.rock, self.bonds)
         self.tool.insert()
@@ -99,13 +105,17 @@ class Cut(Scene):
         self.rock_friction = tool.rock_friction(self.bonds, increment, accuracy.rock_sampling_period)
         self._make_heat()
         self.damping = self._make_damping()
+        self.dashpots = None
+        if self.bond_damping:
+            self.dashpots = BondDashpots(rock=rock, bonds=self.bonds, ratio=self.bond_damping)
         self.recorder = Recorder(self.output.history(), period=max(1, self.steps_in(accuracy.record_period)))
         self.guard = EnergyGuard(work=lambda: tool.contact.work_done, floor=self._least_energy(), period=GUARD_PERIOD)
         curved = self.programme.motion.angular_velocity
         turned_in_space = not self.in_plane and len(rock.pairs) and self.bond_law.yade_law == "JCFpm"
         self._register(
             ShearRotation(bonds=self.bonds, radii=rock.radii) if turned_in_space else None,
-            self.bonds, tool.contact, self.rock_friction, Separation(self.bonds, period=SEPARATION_PERIOD),
+            self.bonds, self.dashpots, tool.contact, self.rock_friction,
+            Separation(self.bonds, period=SEPARATION_PERIOD),
             PathFollower(bodies=tool.bodies, clock=self.programme.path_time, period=PATH_PERIOD) if curved else None,
             tool.wear_engine, tool.profile, self.heat, self.expansion, self.damping, self.recorder, self.guard)
 
@@ -220,6 +230,9 @@ class Cut(Scene):
     def stored_energy(self):
         found = super().stored_energy()
         found["contact_elastic"] += self.tool.contact.elastic_energy()
+        if self.non_viscous_damping:
+            # It is not stored, but a stage that begins anew resets YADE's sum like the stored energies.
+            found["non_viscous_damping"] = access.damped_energy()
         if self.gravity:
             found["potential"] = float(self.rock.masses @ access.rock_positions(self.rock)[:, 1]) * self.gravity.g
         return found

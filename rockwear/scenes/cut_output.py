@@ -23,6 +23,8 @@ class CutOutput(Output):
                    "bond_breaking": scene.bonds.energy_released,
                    "background_damping": scene.damping.dissipated if scene.damping else 0.0,
                    "removed_contacts": scene.tool.removed_energy}
+        if scene.dashpots:
+            balance["bond_dashpots"] = scene.dashpots.dissipated
         if scene.expansion:
             balance["thermal_expansion"] = -scene.expansion.work
         return with_residual(balance, "tool_work")

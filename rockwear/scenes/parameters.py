@@ -144,12 +144,17 @@ CUT_MOTION = (
     Parameter("approach", 0.5e-3, "m", number(0), "free way before the tool meets the rock"))
 DAMPING = Parameter("background_damping", 500.0, "1/s", number(0), "global viscous damping, rate of decay",
                     "ours: [Rojek 2003, 3.3] gives no number")
+OTHER_DAMPING = (
+    Parameter("non_viscous_damping", 0.0, "", number(0, 0.9), "of the rock, a fraction of each force against the "
+              "velocity (Cundall's)", "[Rojek 2003, eqs 3.33-3.34]; [Rojek 2014, 3.1.3]"),
+    Parameter("bond_damping", 0.0, "", number(0, 1), "dashpots of bonds, normal and tangential, as a fraction of the "
+              "critical ones; in the plane", "[Rojek 2014, eqs 18-22]"))
 CYCLES = Group("motion", (
     *CUT_MOTION,
     Parameter("start_up", 0.005, "s", duration, "time of the start-up cut", "[Rojek 2003, 9.1]"),
     Parameter("cycles", 3, "", integer(0), "cycles after the start-up, each on the rock that the start-up left"),
     Parameter("cycle_time", 0.007, "s", duration, "time of a cycle, beside what a worn tool needs to reach the rock"),
-    DAMPING))
+    DAMPING, *OTHER_DAMPING))
 LOWERING = Group("motion", (
     Parameter("velocity", 0.04, "m/s", speed, "cutting velocity", "[Rojek 2003, 13.1]"),
     Parameter("lowering_velocity", 0.08, "m/s", speed, "of the tooth on its way down"),
@@ -157,7 +162,8 @@ LOWERING = Group("motion", (
     Parameter("approach", 2e-3, "m", number(0), "free way before the tool meets the rock"),
     Parameter("start", 0.0, "m", number(0), "place of the tip when it is lowered, from the left end"),
     Parameter("cut_time", 1.0, "s", duration, "time of the horizontal cut", "[Rojek 2003, 13.3]"),
-    Parameter("background_damping", 20.0, "1/s", number(0), "global viscous damping, rate of decay")))
+    Parameter("background_damping", 20.0, "1/s", number(0), "global viscous damping, rate of decay"),
+    OTHER_DAMPING[0]))
 
 # ---- wear
 

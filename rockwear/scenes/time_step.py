@@ -3,6 +3,7 @@ import math
 
 import numpy as np
 
+from rockwear.engines.bond_dashpots import coefficients
 from rockwear.kernels.stability import critical_time_step
 
 CLOSE = 0.05
@@ -11,12 +12,14 @@ TOUCHING = 4
 """Tool particles that are taken to press one sphere at once."""
 
 
-def plane_steps(rock, contact):
-    """(critical step of the bonded rock, of rock under the tool), s. contact: model.contact.ContactLaw."""
+def plane_steps(rock, contact, bond_damping=0.0):
+    """(critical step of the bonded rock, of rock under the tool), s. contact: model.contact.ContactLaw; bond_damping:
+    of the critical damping of bonds."""
     kn, kt = rock.stiffness()
+    cn, ct = coefficients(rock, bond_damping)
     common = dict(positions=rock.positions, radii=rock.radii, masses=rock.masses, inertias=rock.inertias,
                   bonds=rock.pairs,
-                  kn=kn, kt=kt, fixed=np.flatnonzero(rock.fixed))
+                  kn=kn, kt=kt, cn=cn, ct=ct, fixed=np.flatnonzero(rock.fixed))
     bonded = critical_time_step(**common)
     # Any free disc may be the one that the tool presses, from any side, with two of its particles at once.
     free = np.flatnonzero(~rock.fixed)
