@@ -21,7 +21,7 @@ class BondDashpots(Engine):
 
     They act on the pairs of the rock as long as their bond is intact, and later while the two overlap. rock: the
     specimen, in the plane; bonds: engines.bond_log.BondLog; ratio: xi, of the critical damping. All velocities are read
-    and all forces added in each step: that about doubles the cost of a step. `dissipated` (J) is the work of the forces
+    and all forces added in each step, which costs more than the step itself. `dissipated` (J) is the work of the forces
     over the mean of the velocities before and after each step.
     """
 

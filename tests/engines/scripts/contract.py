@@ -19,6 +19,7 @@ from yade import FrictViscoMat, NewtonIntegrator, O, Subdomain
 
 import rockwear.engines
 from rockwear.engines import access, base
+from rockwear.engines.bond_dashpots import BondDashpots
 from rockwear.engines.base import Engine
 from rockwear.engines.conduction import Conduction
 from rockwear.engines.confinement import Membrane, PressedEnds
@@ -341,9 +342,18 @@ class NowhereLinear(Tension):
 
 
 class Softening(Tension):
-    """The same with bonds that YADE's concrete model carries: at the checkpoint some soften and some slip."""
+    """The same with bonds that YADE's concrete model carries, and dashpots: at the checkpoint some soften and some
+    slip."""
 
     law = Cohesive(kn=KN, kt=KT, mu=MU, bond_tension=RN, bond_cohesion=0.3 * RN, bond_fracture_energy=1.0)
+
+    def __init__(self):
+        super().__init__()
+        self.rock.laws = [self.law] * len(self.rock.pairs)
+
+    def _engines(self):
+        bonds, *others = super()._engines()
+        return [bonds, BondDashpots(rock=self.rock, bonds=bonds, ratio=0.05), *others]
 
 
 class Spinning(World):
