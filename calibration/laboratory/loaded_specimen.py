@@ -45,11 +45,15 @@ ELASTIC_RANGE = 0.1, 0.4
 """Stresses over the peak between which E and nu are taken."""
 
 
-def groups(*own, **defaults):
-    """Parameter groups of a test. own: its own Parameters, before those of every test; defaults: other than there."""
+def groups(*own, without=(), **defaults):
+    """Parameter groups of a test. own: its own Parameters, before those of every test; without: names of those of every
+    test that it does not have; defaults: other than there."""
+    def kept(group):
+        return group.without(*(p.name for p in group.parameters if p.name in without))
+
     return parameters.with_defaults(
-        [parameters.SPECIMEN.without("grading_factor", "fine_depth"), parameters.BONDS,
-         Group("loading", (*own, *LOADING)),
+        [kept(parameters.SPECIMEN.without("grading_factor", "fine_depth")), parameters.BONDS,
+         kept(Group("loading", (*own, *LOADING))),
          parameters.ACCURACY.only("time_step_fraction", "time_step", "rock_sampling_period")],
         **{"time_step_fraction": 0.6, **defaults})
 

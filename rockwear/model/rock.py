@@ -54,11 +54,14 @@ class RockAssembly:
     positions: (n, 2 or 3) m; radii: (n,) m; width, height (and depth): m of the box; density: kg/m3 of the bulk; pairs:
     (m, 2), i < j; scale: (n,), by how much the grading of the rock has enlarged each particle. Particles carry the
     mass of the pores, bulk density over solid fraction [Rojek 2014, eq. 63]; porosity: of the packing, where it does
-    not fill the box. `fixed` (n,) bool: particles that do not move. `bond` gives the bonds their laws.
+    not fill the box. `fixed` (n,) bool: particles that do not move; `side` (n,): 1 and 2 on the two sides of a cut,
+    0 elsewhere. `bond` gives the bonds their laws.
     """
 
     laws = grains = None
     """(m,) law of each bond; (n,) number of the grain of each particle, where the rock has grains."""
+    cut_length = 0.0
+    """m, of all bonds that cuts left out."""
 
     def __init__(self, *, positions, radii, width, height, density, pairs, scale=None, depth=None, porosity=None):
         self.positions, self.radii, self.density = np.asarray(positions, float), radii, density
@@ -74,7 +77,7 @@ class RockAssembly:
             self.porosity = 1 - float(volumes.sum()) / (width * height * depth)
             self.masses = density / (1 - self.porosity) * volumes
             self.inertias = 0.4 * self.masses * radii**2
-        self.fixed = np.zeros(self.count, bool)
+        self.fixed, self.side = np.zeros(self.count, bool), np.zeros(self.count, int)
 
     @property
     def size(self):
@@ -103,7 +106,7 @@ class RockAssembly:
         power = self.positions.shape[1] - 1
         # By mass, which stays where radii are reduced.
         shares = self.masses / self.density / self.scale**power
-        mean = (0.5 * math.pi if power == 1 else 2.0) * float(shares.sum() / lengths.sum())
+        mean = (0.5 * math.pi if power == 1 else 2.0) * float(shares.sum() / (lengths.sum() + self.cut_length))
         return mean * self.strength_factor**power
 
     def bond(self, law, *, grain_edge=0.0, within_grains=None, weibull_modulus=0.0, seed=0):
@@ -152,6 +155,27 @@ class RockAssembly:
             if face not in touches:
                 raise ParameterError("fix", face, f"one of {', '.join(touches)}")
             self.fixed |= touches[face] & (y < below)
+
+    def cut(self, start, end):
+        """Leave out the bonds across the segment from `start` to `end`, (2,) m: a notch of no width, in the plane.
+
+        The discs within a largest diameter of it are of side 1, on the left of the way from start to end, or 2, and so
+        are all that lose a bond. Those of different sides never touch unless they are bonded, so that overlaps of the
+        packing across the notch push nothing apart.
+        """
+        along = np.subtract(end, start)
+        length = np.linalg.norm(along)
+        x, y = (along / length) @ (self.positions - start).T, np.cross(along / length, self.positions - start)
+        i, j = self.pairs.T
+        part = np.divide(y[i], y[i] - y[j], out=np.full(len(i), -1.0), where=y[i] != y[j])
+        at = x[i] + part * (x[j] - x[i])
+        crossed = (part >= 0) & (part <= 1) & (at >= 0) & (at <= length)
+        beside = (x > 0) & (x < length) & (abs(y) <= 2 * self.radii.max())
+        beside[self.pairs[crossed]] = True
+        i, j = self.positions[self.pairs[crossed].T]
+        self.cut_length += float(np.linalg.norm(i - j, axis=1).sum())
+        self.pairs = self.pairs[~crossed]
+        self.side[beside] = np.where(y[beside] > 0, 1, 2)
 
     def _near_faces(self, reach):
         """{face: (n,) bool, which particles have their centres within `reach` (n,) m of it}."""
@@ -304,7 +328,7 @@ class Block(RockAssembly):
 
     def leave_out(self, gone):
         """Take particles (n,) bool out of the box, which keeps its size, as long as nothing is bonded."""
-        for name in ("positions", "radii", "masses", "inertias", "fixed"):
+        for name in ("positions", "radii", "masses", "inertias", "fixed", "side"):
             setattr(self, name, getattr(self, name)[~gone])
         self.count = len(self.radii)
 

@@ -5,6 +5,7 @@ from rockwear.report.views.cut import cut
 from rockwear.report.views.forces import forces
 from rockwear.report.views.history import history
 from rockwear.report.views.key_results import key_results
+from rockwear.report.views.load_displacement import load_displacement
 from rockwear.report.views.outlines import outlines
 from rockwear.report.views.record import how_it_was_run, results
 from rockwear.report.views.set_up import set_up
@@ -19,7 +20,7 @@ from rockwear.report.views.wear_triangles import wear_triangles
 VIEWS = (
     key_results, stages, turns.turn_by_turn, two_disc_results, two_disc,
     heat_profiles.errors, heat_profiles.profiles, heat_profiles.convergence, heat_profiles.fields,
-    stress_strain.stress_strain, stress_strain.failure, worn_block,
+    stress_strain.stress_strain, load_displacement, stress_strain.failure, worn_block,
     speeds.speed_tables, speeds.tip_over_time, speeds.fields, speeds.near_the_tip,
     set_up, cut, space.perspective, space.side, forces, history,
     temperature.temperature, temperature.heating, temperature.cooling, turns.turns,

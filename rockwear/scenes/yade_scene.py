@@ -18,8 +18,10 @@ log.setLevel("BodyContainer", log.ERROR)
 
 CARRIERS = {"JCFpm": Bonds, "Cpm": CpmBonds}
 """{law of YADE that carries the bonds: engine}."""
-ROCK_MASK, TOOL_MASK = 1, 3
+ROCK_MASK, TOOL_MASK = 13, 15
 """Bodies meet where masks share a bit; bit 2 is avoided within the tool."""
+SIDE_MASKS = ROCK_MASK, 4, 8
+"""Of rock by its side of a cut: none, and the two that do not meet."""
 
 
 def exactly(value):
@@ -55,10 +57,11 @@ def put_tool_material(*, mu, contact_damping):
 
 def put_rock(rock):
     """The specimen's particles as bodies 0..n-1, its fixed ones without degrees of freedom."""
-    columns = rock.positions.tolist(), rock.radii.tolist(), rock.masses.tolist(), rock.inertias.tolist(), rock.fixed
-    for position, radius, mass, inertia, fixed in zip(*columns):
+    columns = (rock.positions.tolist(), rock.radii.tolist(), rock.masses.tolist(), rock.inertias.tolist(), rock.fixed,
+               rock.side.tolist())
+    for position, radius, mass, inertia, fixed, side in zip(*columns):
         particle = finite_disc if len(position) == 2 else sphere
-        body = particle(position, radius, material="bonding rock", mask=ROCK_MASK, mass=mass, inertia=inertia)
+        body = particle(position, radius, material="bonding rock", mask=SIDE_MASKS[side], mass=mass, inertia=inertia)
         if fixed:
             body.state.blockedDOFs = "xyzXYZ"
         O.bodies.append(body)

@@ -151,3 +151,26 @@ def test_a_loose_block_has_no_bonds_and_no_overlap_and_can_leave_spheres_out():
     high, count = block.positions[:, 1] > 0.05, block.count
     block.leave_out(high)
     assert block.count == count - high.sum() == len(block.masses) and (block.positions[:, 1] <= 0.05).all()
+
+
+def test_a_cut_leaves_out_the_bonds_across_it_and_no_others():
+    """A square lattice, cut between two columns up to between two rows."""
+    x, y = np.meshgrid(np.arange(6), np.arange(5))
+    places = np.column_stack([x.ravel(), y.ravel()]) * 2e-3
+    cut = rock.Arranged(positions=places, radius=1e-3, width=0.01, height=0.008, density=2500)
+    uncut, before = copy.deepcopy(cut), {tuple(pair) for pair in cut.pairs.tolist()}
+    cut.cut((5e-3, -1e-3), (5e-3, 5e-3))
+    gone = before - {tuple(pair) for pair in cut.pairs.tolist()}
+    assert gone == {(2 + 6 * row, 3 + 6 * row) for row in range(3)}
+    assert len(cut.strength_factor) == len(cut.pairs) == len(before) - 3
+    # Those that are left stand for as much crack as before.
+    assert cut.bond_areas == pytest.approx(uncut.bond_areas[0], rel=1e-12)
+    # On the left of the way up is side 1; a largest diameter reaches the nearest column only.
+    assert set(np.flatnonzero(cut.side == 1)) == {2, 8, 14} and set(np.flatnonzero(cut.side == 2)) == {3, 9, 15}
+
+
+def test_an_oblique_cut_crosses_what_it_meets():
+    places = np.array([[0, 0], [2, 0], [4, 0], [4, 2]]) * 1e-3
+    cut = rock.Arranged(positions=places, radius=1e-3, width=0.01, height=0.01, density=2500)
+    cut.cut((2e-3, 1e-3), (4e-3, -1e-3))
+    assert cut.pairs.tolist() == [[0, 1], [2, 3]]

@@ -12,8 +12,9 @@ ARROWS = 900
 
 
 def stress_strain(run):
-    """Section of stress over strain."""
-    if not {"stress", "axial_strain", "lateral_strain", "platen_strain"} <= run.columns.keys() or not run.rows:
+    """Section of stress over strain. Not of tests whose stress is uneven: they show forces."""
+    if not {"stress", "axial_strain", "lateral_strain", "platen_strain"} <= run.columns.keys() or not run.rows or (
+            "force" in run.columns):
         return None
     text = ("Strain is measured in the middle of the specimen; dashed, from the platens' travel. Cracks count all "
             "broken bonds.")

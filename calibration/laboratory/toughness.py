@@ -1,0 +1,91 @@
+"""Fracture toughness: a notched compact tension specimen, in which the opening drives a crack steadily."""
+import math
+
+import numpy as np
+
+from calibration.laboratory.loaded_specimen import SpecimenOutput, SpecimenTest, groups
+from rockwear.kernels import fracture
+from rockwear.kernels.checks import require
+from rockwear.kernels.parameter import Parameter, above_zero, number
+
+GROUPS = groups(
+    Parameter("size", 0.08, "m", above_zero, "W, from the load line to the back; the specimen is 1.2 W x 1.25 W",
+              "ASTM E399"),
+    Parameter("notch", 0.4, "", number(fracture.SHORTEST, 0.8), "length of the notch over W", "measured"),
+    without=("width", "height", "grip", "gauge", "platens"), speed=0.03, drop=0.15, strain_max=0.02,
+    record_strain=1e-5)
+PIN, PIN_PLACE, MOUTH = 0.125, 0.275, 0.25
+"""Over W: half the length of a row of pin discs, its middle's distance from the notch, the load line's from the front,
+all as of the pins of ASTM E399."""
+
+
+class ToughnessOutput(SpecimenOutput):
+    """What the folder of a toughness test shows."""
+
+    def log(self):
+        found = super().log()
+        return {**found, "force": (self.scene.stress * self.scene.section, "N/m"),
+                "opening": (self.scene.opening(), "m")}
+
+    def found(self, columns):
+        v = self.scene.v
+        curve = fracture.resistance_curve(force=columns["force"], opening=columns["opening"], width=v.size,
+                                          notch=v.notch)
+        return {"fracture_toughness": (fracture.toughness(curve["modulus"], curve["energy"]), "Pa sqrt(m)"),
+                "fracture_energy": (curve["energy"], "J/m2"), "youngs_modulus": (curve["modulus"], "Pa"),
+                "peak_toughness": (curve["peak_intensity"], "Pa sqrt(m)"),
+                "peak_force": (float(columns["force"].max()), "N/m"),
+                "crack_length": (float(curve["crack"][-1] * v.size), "m")}
+
+
+class ToughnessTest(SpecimenTest):
+    """The compact tension specimen of ASTM E399 in the plane. values: {name: value} of all GROUPS.
+
+    The notch runs along y from the front, y = 0; the pins part along x. A pin is a row of discs along the load line:
+    prescribed in more than one row they would keep the arms from turning (that makes E 1.6 times and K 1.4 times too
+    large). The opening is measured at the notch, so that what gives way at the pins does not count. The specimen is
+    stable under a given opening, and so the whole growth of the crack can be followed: fracture_energy is the work that
+    is not stored, over the growth of the equivalent elastic crack; fracture_toughness is sqrt(E G_f);
+    peak_toughness is K at the peak force, too small unless W is many times the process zone.
+    """
+
+    sign, output_class = 1, ToughnessOutput
+
+    def __init__(self, values):
+        super().__init__({**values, "width": 1.2 * values["size"], "height": 1.25 * values["size"],
+                          "platens": "smooth"})
+
+    def _specimen(self):
+        rock, v = super()._specimen(), self.v
+        rock.cut((0.6 * v.size, -rock.height), (0.6 * v.size, (MOUTH + v.notch) * v.size))
+        return rock
+
+    def _on_the_load_line(self):
+        return abs(self.rock.positions[:, 1] - MOUTH * self.v.size) < 0.6 * float(self.rock.radii.max())
+
+    def _ends(self):
+        x = self.rock.positions[:, 0] / self.v.size - 0.6
+        row = self._on_the_load_line()
+        left, right = (np.flatnonzero(row & (abs(x - place) < PIN)) for place in (-PIN_PLACE, PIN_PLACE))
+        require(len(left) and len(right), "size", self.v.size, "large enough for a disc in each pin", "m")
+        return left, right
+
+    def _place_gauge(self):
+        """The discs along the notch near the load line."""
+        x, y = self.rock.positions.T
+        off, reach = x - 0.6 * self.v.size, 2.5 * float(self.rock.radii.max())
+        near = (abs(y - MOUTH * self.v.size) < reach) & (abs(off) < 1.6 * reach)
+        self.lips = np.flatnonzero(near & (off < 0)), np.flatnonzero(near & (off > 0))
+        self.inside = np.concatenate(self.lips)
+
+    def _mean_motion(self):
+        return np.zeros(self.rock.count), np.zeros(self.rock.count)
+
+    def opening(self):
+        """m, of the notch at the load line."""
+        left, right = (self.displacements()[lip, 0].mean() for lip in self.lips)
+        return float(right - left)
+
+    def strains(self):
+        """(opening over the width, nothing across)."""
+        return self.opening() / self.rock.width, math.nan
