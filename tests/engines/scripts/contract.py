@@ -369,6 +369,7 @@ class Spinning(World):
         masses = np.full(4, 2500 * 4 / 3 * math.pi * radius**3)
         self.rock = SimpleNamespace(count=4, positions=places, radii=np.full(4, radius), masses=masses,
                                     inertias=0.4 * masses * radius**2, fixed=np.zeros(4, bool), laws=None,
+                                    side=np.zeros(4, int),
                                     pairs=contacts(places, np.full(4, radius), 0.0))
 
     def _engines(self):

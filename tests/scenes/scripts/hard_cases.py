@@ -50,6 +50,7 @@ def lattice():
     masses = np.full(count, 2500 * math.pi * RADIUS**2)
     return SimpleNamespace(count=count, positions=places, radii=np.full(count, RADIUS), masses=masses,
                            inertias=0.5 * masses * RADIUS**2, fixed=np.zeros(count, bool),
+                           side=np.zeros(count, int),
                            pairs=contacts(places, np.full(count, RADIUS), 1e-6 * RADIUS))
 
 
@@ -186,7 +187,8 @@ def rolled(law):
     radii = np.array([1.0, 1.3]) * RADIUS
     masses = 2500 * math.pi * radii**2
     rock = SimpleNamespace(count=2, positions=np.array([(0.0, 0.0), (radii.sum(), 0.0)]), radii=radii, masses=masses,
-                           inertias=0.5 * masses * radii**2, fixed=np.zeros(2, bool), pairs=np.array([(0, 1)]))
+                           inertias=0.5 * masses * radii**2, fixed=np.zeros(2, bool), side=np.zeros(2, int),
+                           pairs=np.array([(0, 1)]))
     bonds = bonded(rock, law)
     O.dt, speed = TIME_STEP, 2 * math.pi * 3 / (3000 * TIME_STEP)
     insert(bonds)
@@ -235,7 +237,7 @@ def spinning(corrected):
     places = 0.95 * radius / math.sqrt(2) * np.array([(1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1)])
     masses = np.full(4, 2500 * 4 / 3 * math.pi * radius**3)
     rock = SimpleNamespace(count=4, positions=places, radii=np.full(4, radius), masses=masses,
-                           inertias=0.4 * masses * radius**2, fixed=np.zeros(4, bool),
+                           inertias=0.4 * masses * radius**2, fixed=np.zeros(4, bool), side=np.zeros(4, int),
                            pairs=contacts(places, np.full(4, radius), 0.0))
     bonds = bonded(rock, law, ratcheting_free=False)
     chance = np.random.default_rng(1)
