@@ -84,10 +84,11 @@ of 0: exact. What is not named has no influence."""
 
 
 class Micro:
-    """The unknowns of one fit and what they mean. law: of rock_targets.LAWS; radius: mean radius, m."""
+    """The unknowns of one fit and what they mean. law: of rock_targets.LAWS; radius: mean radius, m; given: {parameter:
+    value} of what is not fitted; 0 is left out."""
 
-    def __init__(self, *, law, targets, radius, porosity):
-        self.law, self.radius, self.porosity = law, radius, porosity
+    def __init__(self, *, law, targets, radius, given):
+        self.law, self.radius, self.given = law, radius, {name: value for name, value in given.items() if value}
         self.observables = observables(targets)
         guess = self._first_guess(targets)
         spans = {"kn": 10, "kt_over_kn": (0.01, 4.0), "tension": 10, "shear": (0.3, 30.0), "mu": (0.05, 2.0),
@@ -131,7 +132,7 @@ class Micro:
             found.update(bond_tension=u["tension"], bond_cohesion=u["shear"] * u["tension"])
         if self.law == "cohesive":
             found["bond_fracture_energy"] = u["length"] * u["tension"]**2 / u["kn"]
-        found.update(mu=u["mu"], bonding_gap=GAP * self.radius, porosity=self.porosity)
+        found.update(mu=u["mu"], bonding_gap=GAP * self.radius, **self.given)
         return {"bond_law": self.law, **{name: float(f"{value:.5g}") for name, value in found.items()}}
 
     def at_bounds(self, x):

@@ -19,6 +19,8 @@ POISSON = -0.2, 0.36
 """Poisson's ratios that bonds with springs along and across them can give."""
 LAWS = "brittle", "coulomb", "cohesive"
 """Bond laws that can be fitted, as far as they exist."""
+GIVEN = "porosity", "weibull_modulus", "grain_edge"
+"""Parameters of the rock that are given and not fitted."""
 CONFINEMENTS = 0.1, 0.3
 """Confinements over UCS at which a friction angle is fitted."""
 HIGHEST = 1.5
@@ -60,7 +62,7 @@ ROCK = Group("rock", (
     Parameter("radius_max", 1.5e-3, "m", plausible(*RADIUS), "largest radius of the particles", "[Rojek 2003, 5.1]"),
     Parameter("bond_law", LAWS[-1] if LAWS[-1] in BOND_LAWS else LAWS[0], "",
               choice(*(law for law in LAWS if law in BOND_LAWS)), "force law of the bonds"),
-    OF_ROCK["porosity"]))
+    *(OF_ROCK[name] for name in GIVEN)))
 OUTPUT = Group("output", (Parameter("out", "", "", text, "folder of rock.json, fit.md and all runs"),))
 GROUPS = [TARGETS, ROCK, OUTPUT]
 

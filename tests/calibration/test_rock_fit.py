@@ -44,7 +44,7 @@ def laboratory(micro, scatter, limit=np.inf):
 
 
 def fitted(targets, law="brittle", scatter=0.02, **options):
-    micro = Micro(law=law, targets=targets, radius=1.25e-3, porosity=0.12)
+    micro = Micro(law=law, targets=targets, radius=1.25e-3, given={"porosity": 0.12, "grain_edge": 0.0})
     said = []
     return micro, rock_fit.fit(micro=micro, measure=laboratory(micro, scatter, **options), say=said.append), said
 
@@ -74,7 +74,7 @@ def test_a_rock_with_scatter_is_met_on_packings_that_were_not_seen(law, targets)
 
 def test_a_first_check_that_misses_joins_the_fit():
     """The packings of the fit are 9 % stronger than all others."""
-    micro = Micro(law="brittle", targets=SANDSTONE, radius=1.25e-3, porosity=0.12)
+    micro = Micro(law="brittle", targets=SANDSTONE, radius=1.25e-3, given={"porosity": 0.12, "grain_edge": 0.0})
     plain = laboratory(micro, 0.01)
 
     def measure(x, stage):
@@ -113,7 +113,7 @@ def test_what_it_leaves_is_a_rock_file_and_a_page_that_begins_with_the_answer(tm
 
 @pytest.mark.parametrize("law", [law for law in rock_targets.LAWS if law in BOND_LAWS])
 def test_first_guesses_are_parameters_of_the_scenes(law):
-    micro = Micro(law=law, targets=SANDSTONE, radius=2.5e-3, porosity=0.12)
+    micro = Micro(law=law, targets=SANDSTONE, radius=2.5e-3, given={"porosity": 0.12, "grain_edge": 0.0})
     found = micro.parameters(micro.first)
     of_law = {p.name for p in BOND_LAWS[law].parameters}
     assert set(found) == {"bond_law", "bonding_gap", "porosity", *of_law}

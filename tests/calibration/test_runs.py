@@ -55,7 +55,7 @@ class Recorded:
 def runs_of_a_fit(law="cohesive", **targets):
     """Recorded: the tests of one step of a rock fit."""
     found = Targets(18e9, 0.18, 60e6, 7e6, points=((6e6, 90e6),), **targets)
-    runs, micro = Recorded(), Micro(law=law, targets=found, radius=2.5e-3, porosity=0.1)
+    runs, micro = Recorded(), Micro(law=law, targets=found, radius=2.5e-3, given={"porosity": 0.1})
     Laboratory(runs=runs, targets=found, radii=(2e-3, 3e-3), micro=micro).measure(micro.first, rock_fit.SMALL)
     return runs
 
