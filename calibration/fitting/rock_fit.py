@@ -9,7 +9,7 @@ import numpy as np
 
 from calibration.campaigns.runs import RunFailed, Runs
 from calibration.fitting import rock_page
-from calibration.fitting.rock_laws import AIM, Micro
+from calibration.fitting.rock_unknowns import AIM, Micro
 from calibration.fitting.rock_targets import GIVEN, GROUPS, targets_of
 from calibration.fitting.rock_tests import Laboratory, Stage
 from calibration.fitting.surrogate import Problem, Surrogate, solve, uncertainty
@@ -65,8 +65,8 @@ def fit(*, micro, measure, say=print):
     """Fit of the unknowns of `micro`. measure(x, Stage) -> {Observable: (seeds,) values}: the laboratory."""
     found, began = Fit(micro.first, np.zeros(len(micro.first))), time.time()
     problem = Problem(target=np.array([float(o.scaled(o.target)) for o in micro.observables]),
-                      tolerance=np.array([AIM * o.tolerance for o in micro.observables]), first=micro.first,
-                      low=micro.low, high=micro.high, hold=micro.hold)
+                      tolerance=np.array([AIM * o.tolerance for o in micro.observables]),
+                      low=micro.low, high=micro.high)
 
     def tested(x, stage):
         values = measure(x, stage)

@@ -61,24 +61,20 @@ class Surrogate:
         """(n,): the unknowns at which the model about `centre` (n,) is nearest to the targets."""
         a, slopes, _ = self.about(centre)
         weight = 1 / problem.tolerance
-        matrix = np.vstack([weight[:, None] * slopes, np.diag(1 / problem.hold)])
-        wanted = np.concatenate([weight * (problem.target - a), (problem.first - centre) / problem.hold])
         low, high = (np.clip(bound, centre - LONGEST, centre + LONGEST) - centre
                      for bound in (problem.low, problem.high))
-        return centre + lsq_linear(matrix, wanted, bounds=(low - 1e-9, high + 1e-9)).x
+        return centre + lsq_linear(weight[:, None] * slopes, weight * (problem.target - a),
+                                   bounds=(low - 1e-9, high + 1e-9)).x
 
 
 @dataclass
 class Problem:
-    """What is sought. target, tolerance: (m,) of the observables; first, low, high: (n,) of the unknowns; hold: (n,),
-    how far an unknown moves from the first guess as if it missed a target by its tolerance; np.inf: freely."""
+    """What is sought. target, tolerance: (m,) of the observables; low, high: (n,) of the unknowns."""
 
     target: np.ndarray
     tolerance: np.ndarray
-    first: np.ndarray
     low: np.ndarray
     high: np.ndarray
-    hold: np.ndarray
 
 
 @dataclass
@@ -129,6 +125,5 @@ def uncertainty(surrogate, problem, centre, error):
     """(n,): standard deviations of the unknowns that come from those of the observables, error (m,)."""
     _, slopes, _ = surrogate.about(centre)
     weight = 1 / problem.tolerance
-    matrix = np.vstack([weight[:, None] * slopes, np.diag(1 / problem.hold)])
-    inverse = np.linalg.pinv(matrix)[:, :len(weight)] * weight
+    inverse = np.linalg.pinv(weight[:, None] * slopes) * weight
     return np.sqrt(np.nansum((inverse * error)**2, axis=1))

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from calibration.fitting import rock_fit, rock_page, rock_targets
-from calibration.fitting.rock_laws import Micro
+from calibration.fitting.rock_unknowns import Micro
 from calibration.fitting.rock_targets import GROUPS, MOST_POINTS, Targets, read_table, targets_of
 from rockwear.kernels.bond_laws import BOND_LAWS
 from rockwear.kernels.checks import ParameterError

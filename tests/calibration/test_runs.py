@@ -8,7 +8,7 @@ from calibration.benchmarks import loading_speed, particle_size
 from calibration.campaigns import sharp_and_worn, tip_temperature, uniaxial, wear
 from calibration.campaigns.runs import RunFailed, Runs, finished
 from calibration.fitting import rock_fit
-from calibration.fitting.rock_laws import Micro
+from calibration.fitting.rock_unknowns import Micro
 from calibration.fitting.rock_targets import Targets
 from calibration.fitting.rock_tests import Laboratory
 from calibration.validation import __main__ as validation

@@ -21,8 +21,8 @@ def rock(x):
 
 
 def problem(target, **changes):
-    given = dict(target=target, tolerance=np.array([0.02, 0.004, 0.02, 0.04]), first=GUESS, low=GUESS - 3,
-                 high=GUESS + 3, hold=np.full(4, np.inf))
+    given = dict(target=target, tolerance=np.array([0.02, 0.004, 0.02, 0.04]), low=GUESS - 3,
+                 high=GUESS + 3)
     return Problem(**{**given, **changes})
 
 
@@ -41,7 +41,7 @@ def test_it_finds_known_parameters_in_few_measurements():
 def test_exact_scaling_needs_one_step():
     """Only stiffness and strength are wrong: their columns are exact."""
     start = TRUE + [0.3, 0, -0.5, 0]
-    found = solve(of(rock), Surrogate(JACOBIAN, DEVIATION), problem(rock(TRUE), first=start), start=start, most=5)
+    found = solve(of(rock), Surrogate(JACOBIAN, DEVIATION), problem(rock(TRUE)), start=start, most=5)
     assert found.reached and len(found.steps) == 2
 
 
@@ -98,13 +98,6 @@ def test_slopes_pass_to_other_specimens_but_not_the_values():
 
     found = solve(of(large), small.next_stage(first.x), sought, start=first.x, most=8)
     assert found.reached and len(found.steps) <= 2 + 1
-
-
-def test_an_unknown_that_is_held_moves_only_where_it_is_needed():
-    sought = problem(rock(TRUE)[:3], tolerance=np.full(3, 0.02), hold=np.array([np.inf, np.inf, 3.0, np.inf]))
-    found = solve(lambda x: (rock(x)[:3], np.full(3, 1e-3)), Surrogate(JACOBIAN[:3], DEVIATION[:3]), sought,
-                  start=GUESS, most=8)
-    assert found.reached and found.x[2] == pytest.approx(GUESS[2], abs=0.1)
 
 
 def test_uncertainty_follows_the_scaling_laws():

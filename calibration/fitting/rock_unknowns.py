@@ -22,8 +22,6 @@ SHEAR, TENSION, FRICTION = 3.0, 1.4, 0.7
 """First guesses: shear over tensile strength of a bond, its tensile strength over the rock's, friction."""
 TOUGHNESS = 1 / 6.88
 """sqrt(m), K_IC over tensile strength of rocks [Zhang 2002, as recalled], where no toughness is given."""
-LOOSELY = 3.0
-"""Hold of the friction where no confined strength is given: it moves only if nothing else helps."""
 GAP = 0.08
 """bonding_gap over the mean radius [Rojek 2014, eq. 6], the value of the scenes."""
 AIM = 0.4
@@ -95,13 +93,12 @@ class Micro:
                  "length": (radius, 100 * guess["length"])}
         bounds = {name: span if isinstance(span, tuple) else (guess[name] / span, guess[name] * span)
                   for name, span in spans.items()}
-        self.fixed = {}
-        if targets.fracture_toughness is None:
-            self.fixed["length"] = guess.pop("length")
+        # Without a target that they decide on, these stay.
+        idle = [name for name, target in (("length", targets.fracture_toughness), ("mu", targets.points)) if not target]
+        self.fixed = {name: guess.pop(name) for name in idle}
         self.names = list(guess)
         self.first = np.log(list(guess.values()))
         self.low, self.high = np.log([bounds[name] for name in guess]).T
-        self.hold = np.array([LOOSELY if name == "mu" and not targets.points else np.inf for name in guess])
 
     def _first_guess(self, t):
         nu = t.poissons_ratio - LATTICE_NU
