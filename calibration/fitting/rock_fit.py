@@ -10,7 +10,7 @@ import numpy as np
 from calibration.campaigns.runs import RunFailed, Runs
 from calibration.fitting import rock_page
 from calibration.fitting.rock_unknowns import AIM, Micro
-from calibration.fitting.rock_targets import GIVEN, GROUPS, targets_of
+from calibration.fitting.rock_targets import GROUPS, given_of, targets_of
 from calibration.fitting.rock_tests import Laboratory, Stage
 from calibration.fitting.surrogate import Problem, Surrogate, solve, uncertainty
 from rockwear.kernels.checks import ParameterError, require
@@ -134,7 +134,7 @@ def main(words):
         return 2
     radii = values["radius_min"], values["radius_max"]
     micro = Micro(law=values["bond_law"], targets=targets, radius=sum(radii) / 2,
-                  given={name: values[name] for name in GIVEN})
+                  given=given_of(values, targets))
     try:
         with Runs(folder / "runs", keep=True) as runs:
             laboratory = Laboratory(runs=runs, targets=targets, radii=radii, micro=micro)

@@ -18,8 +18,9 @@ import numpy as np
 LATTICE_NU, LATTICE_E = 0.04, 0.69
 """Random packings against the triangular lattice of equal discs: nu is so much larger, E so many times as large
 (calibration/results/uniaxial.md)."""
-SHEAR, TENSION, FRICTION = 3.0, 1.4, 0.7
-"""First guesses: shear over tensile strength of a bond, its tensile strength over the rock's, friction."""
+SHEAR, RATIO, TENSION, FRICTION = 3.0, 8.1, 1.6, 0.7
+"""First guesses: shear over tensile strength of a bond at this UCS over tensile strength, with whose square it goes; a
+bond's tensile strength over the rock's; friction."""
 TOUGHNESS = 1 / 6.88
 """sqrt(m), K_IC over tensile strength of rocks [Zhang 2002, as recalled], where no toughness is given."""
 GAP = 0.08
@@ -71,7 +72,7 @@ def observables(targets):
 SLOPES = {
     "E": {"kn": (1, 0), "kt_over_kn": (0.25, 0.1)},
     "nu": {"kt_over_kn": (-0.12, 0.05)},
-    "ucs": {"kt_over_kn": (0, 0.2), "tension": (1, 0), "shear": (0.5, 0.3), "mu": (0.1, 0.2), "length": (0.2, 0.2)},
+    "ucs": {"kt_over_kn": (0, 0.2), "tension": (1, 0), "shear": (0.5, 0.3), "mu": (0, 0.05), "length": (0.2, 0.2)},
     "tension": {"kt_over_kn": (0, 0.2), "tension": (1, 0), "shear": (0.1, 0.15), "length": (0.15, 0.1)},
     "toughness": {"kt_over_kn": (0, 0.1), "tension": (1, 0), "shear": (0.05, 0.1), "mu": (0, 0.05),
                   "length": (0.5, 0.15)},
@@ -89,7 +90,7 @@ class Micro:
         self.law, self.radius, self.given = law, radius, {name: value for name, value in given.items() if value}
         self.observables = observables(targets)
         guess = self._first_guess(targets)
-        spans = {"kn": 10, "kt_over_kn": (0.01, 4.0), "tension": 10, "shear": (0.3, 30.0), "mu": (0.05, 2.0),
+        spans = {"kn": 10, "kt_over_kn": (0.01, 4.0), "tension": 10, "shear": (0.5, 10.0), "mu": (0.05, 2.0),
                  "length": (radius, 100 * guess["length"])}
         bounds = {name: span if isinstance(span, tuple) else (guess[name] / span, guess[name] * span)
                   for name, span in spans.items()}
@@ -105,9 +106,10 @@ class Micro:
         ratio = min(max((1 - 3 * nu) / (1 + nu), 0.02), 3.5)
         kn = t.youngs_modulus / (LATTICE_E * 2 * math.sqrt(3) * (1 + ratio) / (3 + ratio))
         tension = TENSION * t.tensile_strength
+        shear = min(max(SHEAR * (t.ucs / t.tensile_strength / RATIO)**2, 0.7), 8.0)
         toughness = t.fracture_toughness or TOUGHNESS * t.tensile_strength
         length = max(toughness**2 / t.youngs_modulus * kn / tension**2, 1.01 * self.radius)
-        return {"kn": kn, "kt_over_kn": ratio, "tension": tension, "shear": SHEAR, "mu": FRICTION, "length": length}
+        return {"kn": kn, "kt_over_kn": ratio, "tension": tension, "shear": shear, "mu": FRICTION, "length": length}
 
     def slopes(self):
         """(jacobian (m, n), deviation (m, n)) of the observables over the unknowns."""

@@ -6,7 +6,7 @@ import pytest
 
 from calibration.fitting import rock_fit, rock_page, rock_targets
 from calibration.fitting.rock_unknowns import Micro
-from calibration.fitting.rock_targets import GROUPS, MOST_POINTS, Targets, read_table, targets_of
+from calibration.fitting.rock_targets import GROUPS, MOST_POINTS, Targets, given_of, read_table, targets_of
 from rockwear.kernels.bond_laws import BOND_LAWS
 from rockwear.kernels.checks import ParameterError
 from rockwear.model import rock_file
@@ -119,8 +119,8 @@ def test_first_guesses_are_parameters_of_the_scenes(law):
     assert set(found) == {"bond_law", "bonding_gap", "porosity", *of_law}
     for name, value in found.items():
         OF_ROCK[name].check(value)
-    # A force is a stress times the diameter.
-    assert found.get("Rn", 5e-3 * 9.8e6) == pytest.approx(5e-3 * 9.8e6)
+    # Of a tensile strength of 1.6 times the rock's; a force is a stress times the diameter.
+    assert found.get("Rn", 5e-3 * 11.2e6) == pytest.approx(5e-3 * 11.2e6)
 
 
 # ---- what is refused
@@ -145,6 +145,7 @@ BRITTLE = {"bond_law": "brittle"}
     ({"friction_angle": 40, "triaxial": "table.csv"}, "friction_angle = 40 deg: must be left out with triaxial"),
     ({"triaxial": "nowhere.csv"}, "triaxial = nowhere.csv: must be a readable CSV file"),
     ({"radius_max": 5e-4}, "radius_max = 0.0005 m: must be at least radius_min = 0.001"),
+    ({"grain_edge": -2}, "grain_edge = -2 m: must be at least -1"),
     ({"radius_min": 1}, "radius_min = 1 m: must be between 1e-06 and 0.1"),
     ({"bond_law": "padova"}, "bond_law = padova: must be one of"),
     ({"uc": 3}, "uc = 3: must be a parameter of this scene; did you mean ucs")])
@@ -188,6 +189,18 @@ def test_a_bad_table_is_refused(text, error, tmp_path):
     with pytest.raises(ParameterError) as caught:
         read_targets(triaxial=table(tmp_path, text))
     assert error in str(caught.value) and "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("changes, edge", [
+    ({"tensile_strength": 15e6}, 0.0), ({}, 2.25e-3), ({"tensile_strength": 5e6}, 2.75e-3),
+    ({"radius_min": 2e-3, "radius_max": 3e-3}, 4.5e-3), ({"grain_edge": 1e-3}, 1e-3), ({"grain_edge": 0}, 0.0)])
+def test_grains_are_chosen_by_the_ratio_of_the_strengths_unless_they_are_given(changes, edge):
+    words = [word for name, value in {**GIVEN, **changes}.items() for word in (f"--{name}", str(value))]
+    values = parameters.read(GROUPS, words)
+    found = given_of(values, targets_of(values))
+    assert found == {"porosity": 0.12, "weibull_modulus": 0.0, "grain_edge": pytest.approx(edge)}
+    micro = Micro(law="cohesive", targets=targets_of(values), radius=1.25e-3, given=found)
+    assert ("grain_edge" in micro.parameters(micro.first)) == (edge > 0)
 
 
 def test_a_friction_angle_is_two_points_of_mohr_and_coulomb():
