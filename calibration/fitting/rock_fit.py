@@ -31,7 +31,7 @@ LEAST_NOISE, COMMON_SEEDS = 0.004, 0.5
 
 @dataclass
 class Step:
-    """One set of tests: the stage, the unknowns x (n,), {Observable: (seeds,) values}."""
+    """One set of tests: the stage, the unknowns x (n,), {Observable: (packings,) values}."""
 
     stage: str
     x: np.ndarray
@@ -47,6 +47,7 @@ class Fit:
     steps: list = field(default_factory=list)
     verdicts: dict = field(default_factory=dict)
     not_failed: list = field(default_factory=list)
+    failures: list = field(default_factory=list)
     seconds: float = 0.0
 
 
@@ -62,7 +63,7 @@ class Verdict:
 
 
 def fit(*, micro, measure, say=print):
-    """Fit of the unknowns of `micro`. measure(x, Stage) -> {Observable: (seeds,) values}: the laboratory."""
+    """Fit of the unknowns of `micro`. measure(x, Stage) -> {Observable: (packings,) values}: the laboratory."""
     found, began = Fit(micro.first, np.zeros(len(micro.first))), time.time()
     problem = Problem(target=np.array([float(o.scaled(o.target)) for o in micro.observables]),
                       tolerance=np.array([AIM * o.tolerance for o in micro.observables]),
@@ -98,19 +99,19 @@ def fit(*, micro, measure, say=print):
 
 
 def statistics(values):
-    """(means (m,), noise (m,)) of {Observable: (seeds,)}, as the solver sees them."""
+    """(means (m,), noise (m,)) of {Observable: (packings,)}, as the solver sees them."""
     means, errors = np.array([spread(o, of_seeds) for o, of_seeds in values.items()]).T
     return means, np.hypot(LEAST_NOISE, COMMON_SEEDS * errors)
 
 
 def spread(observable, values):
-    """(mean, standard error), scaled, of the values (seeds,) of an observable; nan where a packing has none."""
+    """(mean, standard error), scaled, of the values (packings,) of an observable."""
     scaled = observable.scaled(values)
     return float(observable.scaled(np.mean(values))), float(scaled.std(ddof=1) / np.sqrt(len(scaled)))
 
 
 def verdict(observable, values):
-    """Verdict of the values (seeds,) of an observable."""
+    """Verdict of the values (packings,) of an observable."""
     mean = float(np.mean(values))
     allowed = observable.tolerance if observable.kind == "nu" else observable.allowed * observable.target
     return Verdict(mean=mean, deviation=float(np.std(values, ddof=1)), count=len(values),
@@ -139,7 +140,7 @@ def main(words):
         with Runs(folder / "runs", keep=True) as runs:
             laboratory = Laboratory(runs=runs, targets=targets, radii=radii, micro=micro)
             found = fit(micro=micro, measure=laboratory.measure)
-            found.not_failed = laboratory.not_failed.get(found.steps[-1].stage, [])
+            found.not_failed, found.failures = laboratory.not_failed[found.steps[-1].stage], laboratory.failures
         rock_page.write(folder, found, micro=micro, targets=targets, values=values)
     except (RunFailed, OSError) as error:
         print(f"error: {error}", file=sys.stderr)

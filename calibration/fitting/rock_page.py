@@ -6,6 +6,8 @@ import matplotlib
 import numpy as np
 
 from calibration import generated
+from rockwear.kernels.checks import ParameterError
+from rockwear.kernels.strength_envelope import mohr_coulomb
 from rockwear.model.rock_file import FORMAT, PROPERTIES
 from rockwear.report import plots
 
@@ -49,7 +51,26 @@ def answer(found, micro):
     if found.not_failed:
         lines.append(f"Some specimens did not fail before the end of the test: {', '.join(found.not_failed)}. Their "
                      "strengths are lower bounds.")
+    if found.failures:
+        lines.append(f"Left out: {'; '.join(found.failures)}.")
     return lines
+
+
+def envelope(found, micro):
+    """{property: (values (packings,), unit)} of Mohr and Coulomb, nothing without confined strengths."""
+    values = found.steps[-1].values
+    points = [o for o in micro.observables if o.kind == "confined"]
+    if not points:
+        return {}
+    points.insert(0, next(o for o in micro.observables if o.name == "ucs"))
+    try:
+        lines = [mohr_coulomb([o.confinement for o in points], strengths)
+                 for strengths in zip(*(values[o] for o in points))]
+    except ParameterError:
+        # Strengths of some packing that do not rise with the confinement.
+        return {}
+    return {name: (np.array([getattr(line, name).value for line in lines]), PROPERTIES[name][0])
+            for name in ("cohesion", "friction_angle")}
 
 
 def write(folder, found, *, micro, targets, values):
@@ -74,6 +95,9 @@ def rock_file(found, *, micro, targets, values):
         measured["triaxial"] = {"mean": [[o.confinement, one.mean] for o, one in confined.items()],
                                 "standard_deviation": [one.deviation for one in confined.values()],
                                 "packings": next(iter(confined.values())).count, "unit": "Pa"}
+    for name, (values_of, unit) in envelope(found, micro).items():
+        measured[name] = {"mean": float(values_of.mean()), "standard_deviation": float(values_of.std(ddof=1)),
+                          "packings": len(values_of), "unit": unit}
     return {"format": FORMAT, "name": values["name"], "source": values["source"],
             "targets": {name: {"value": value, "unit": PROPERTIES[name][0]}
                         for name, value in targets.as_properties().items()},
@@ -93,6 +117,10 @@ def page(found, *, micro, targets, values):
          for o, one in found.verdicts.items()])
     if targets.left_out:
         lines += [targets.left_out, ""]
+    for name, (values_of, unit) in envelope(found, micro).items():
+        wanted = getattr(targets, name, None)
+        lines += [f"{name}: {values_of.mean():.4g} ± {values_of.std(ddof=1):.2g} {unit}"
+                  + (f", target {wanted:g}" if wanted else "") + f" ({len(values_of)} packings).", ""]
     lines += ["![steps](fit.png)", "", "## Micro-parameters", ""]
     lines += generated.table(["parameter", "value"], list(micro.parameters(found.x).items()))
     radii = " to ".join(f"{1e3 * values[name]:g}" for name in ("radius_min", "radius_max"))

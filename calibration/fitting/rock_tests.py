@@ -5,12 +5,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from calibration.campaigns.runs import RunFailed
+
 COMMON = {"report": "false", "snapshot_period": 1}
 SPEED = {"compression": 6.8, "tension": 42.0}
 """Speed of a platen, m/s, over strength / E. They are those of [Rojek 2003]'s bonds at 0.05 m/s: a rock that fails at
 less strain is loaded as much more slowly (calibration/results/uniaxial.md)."""
 TOUGHNESS_SIZE = 64.0
 """Size of a toughness specimen over the mean radius."""
+LEAST = 2
+"""Packings below which there is no mean."""
 DEAR, DEAR_PACKINGS = ("triaxial", "toughness"), 3
 """Tests that take minutes, and the packings that they are made on at most."""
 
@@ -26,11 +30,14 @@ class Stage:
 
 
 class Laboratory:
-    """Runs the tests of a list of Observables. runs: campaigns.runs.Runs; radii: (smallest, largest), m."""
+    """Runs the tests of a fit. runs: campaigns.runs.Runs; targets: Targets; radii: (smallest, largest), m; micro: Micro
+
+    not_failed: {stage: tests in which some specimen did not fail}; failures: what runs that ended badly said.
+    """
 
     def __init__(self, *, runs, targets, radii, micro):
         self.runs, self.targets, self.radii, self.micro = runs, targets, radii, micro
-        self.not_failed = {}
+        self.not_failed, self.failures = {}, []
 
     def measure(self, x, stage):
         """{Observable: (packings,) values} at the logarithms x of the unknowns. Raises RunFailed."""
@@ -40,12 +47,28 @@ class Laboratory:
         order = sorted(tests, key=lambda test: ("triaxial", "compression", "toughness", "tension").index(test[0]))
         seeds = {test: stage.seeds[:DEAR_PACKINGS if test[0] in DEAR else None] for test in order}
         jobs = {(*test, seed): self._start(*test, seed, parameters, stage) for test in order for seed in seeds[test]}
-        done = {key: job.result() for key, job in jobs.items()}
+        done = self._finished(jobs)
         self.not_failed[stage.name] = sorted(
             {f"{test} {1e-6 * confinement:g} MPa" if confinement else test
              for (test, confinement, _), run in done.items() if run.result("failed") == 0})
-        return {o: np.array([done[o.test, o.confinement, seed].result(o.result)
-                             for seed in seeds[o.test, o.confinement]]) for o in self.micro.observables}
+        values = {o: np.array([run.result(o.result) for (test, confinement, _), run in done.items()
+                               if (test, confinement) == (o.test, o.confinement)]) for o in self.micro.observables}
+        found = {o: of_packings[np.isfinite(of_packings)] for o, of_packings in values.items()}
+        for o, of_packings in found.items():
+            if len(of_packings) < LEAST:
+                raise RunFailed(f"{o.name} could not be measured on {LEAST} packings of the stage {stage.name}: "
+                                f"{'; '.join(self.failures) or 'too few rows before the peak'}")
+        return found
+
+    def _finished(self, jobs):
+        """{key: RunFolder} of the jobs that end well. A packing that fails is left out."""
+        done = {}
+        for key, job in jobs.items():
+            try:
+                done[key] = job.result()
+            except RunFailed as error:
+                self.failures.append(str(error))
+        return done
 
     def _start(self, test, confinement, seed, parameters, stage):
         script, values = self._test(test, confinement, stage)

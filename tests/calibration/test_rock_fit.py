@@ -105,6 +105,9 @@ def test_what_it_leaves_is_a_rock_file_and_a_page_that_begins_with_the_answer(tm
     part = made.parts["plane"]
     assert part.parameters["bond_law"] == "cohesive" and part.parameters["porosity"] == 0.12
     assert part.measured["fracture_toughness"]["packings"] == 5 and len(part.measured["triaxial"]["mean"]) == 2
+    angle = 2 * np.degrees(np.arctan(np.sqrt(40 / 18 + 4 / 3))) - 90
+    assert part.measured["friction_angle"]["mean"] == pytest.approx(angle, abs=6)
+    assert part.measured["cohesion"]["mean"] == pytest.approx(60e6 / 2 / np.tan(np.radians(45 + angle / 2)), rel=0.15)
     page = (tmp_path / "fit.md").read_text(encoding="utf-8")
     assert page.split("\n\n")[2].startswith("All 7 targets are met, on 5 packings that the fit has not seen.")
     assert (tmp_path / "fit.png").stat().st_size > 1e4

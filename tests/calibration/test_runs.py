@@ -72,6 +72,33 @@ def test_a_fit_tests_every_packing_once_and_keeps_the_results_apart():
     assert {values["width"] for _, values in runs.started} == {0.109}
 
 
+class Failing(Recorded):
+    """Compression of the first packing, or of all but one, fails."""
+
+    def __init__(self, fewest):
+        super().__init__()
+        self.fewest = fewest
+
+    def result(self, name=None):
+        _, values = self.started.pop(0) if name is None else (None, {})
+        if values.get("test") == "compression" and values["seed"] <= self.fewest:
+            raise RunFailed(f"packing {values['seed']} ended with 1")
+        return super().result(name)
+
+
+def test_a_packing_that_fails_is_left_out_and_one_alone_is_no_mean():
+    targets = Targets(18e9, 0.18, 60e6, 7e6)
+    micro = Micro(law="cohesive", targets=targets, radius=1.25e-3, given={})
+    one, most = (Laboratory(runs=Failing(count), targets=targets, radii=(1e-3, 1.5e-3), micro=micro)
+                 for count in (1, 3))
+    found = one.measure(micro.first, rock_fit.SMALL)
+    assert {o.name: len(values) for o, values in found.items()} == {
+        "youngs_modulus": 3, "poissons_ratio": 3, "ucs": 3, "tensile_strength": 4}
+    assert one.failures == ["packing 1 ended with 1"]
+    with pytest.raises(RunFailed, match="youngs_modulus could not be measured on 2 packings of the stage small: pack"):
+        most.measure(micro.first, rock_fit.SMALL)
+
+
 def test_every_run_that_is_started_has_parameters_that_its_scene_takes(tmp_path):
     runs, checks = tmp_path / "runs.json", tmp_path / "checks.json"
     cases = [(str(ROOT / script), values) for script, values in started() if script not in OWN_COMMAND_LINE]
