@@ -4,6 +4,7 @@ import json
 import numpy as np
 import pytest
 
+from calibration.campaigns import library
 from calibration.fitting import rock_fit, rock_page, rock_targets
 from calibration.fitting.rock_unknowns import Micro
 from calibration.fitting.rock_targets import GROUPS, MOST_POINTS, Targets, given_of, read_table, targets_of
@@ -210,3 +211,15 @@ def test_a_friction_angle_is_two_points_of_mohr_and_coulomb():
     found = read_targets(friction_angle=30)
     assert np.array(found.points) == pytest.approx(np.array([(6e6, 78e6), (18e6, 114e6)]))
     assert found.as_properties()["friction_angle"] == 30 and "triaxial" not in found.as_properties()
+
+
+@pytest.mark.parametrize("name", library.ROCKS)
+def test_the_rocks_of_the_library_can_be_fitted(name, tmp_path):
+    values = parameters.read(GROUPS, library.words_of(name, tmp_path))
+    assert values["name"] == name and targets_of(values).ucs == library.ROCKS[name]["ucs"]
+
+
+def test_the_table_of_the_library_has_every_measured_property():
+    lines = library.table()
+    assert "| m_sandstone | plane | ucs | – | 1.827e+08 | 1.3e+07 | – | 5 | Pa |" in lines
+    assert library.shown([(1e7, 6e7)]) == "6e+07 at 1e+07" and library.difference(60e6, 57e6) == "-5.0 %"

@@ -1,0 +1,82 @@
+"""Fits the rocks of the library to their sources' numbers, and writes the table of measured against target.
+
+    python3 -m calibration.campaigns.library DIR [NAME ...]     fits, one after another; DIR/NAME/rock.json, fit.md
+    python3 -m calibration.campaigns.library DIR --read         the table alone, of the rocks in rockwear/rocks
+
+An interrupted fit resumes. A rock that is good is put into the library by copying its file. Writes DIR/rocks.md.
+"""
+import sys
+from pathlib import Path
+
+from calibration import generated
+from calibration.fitting import rock_fit
+from rockwear.kernels.checks import ParameterError
+from rockwear.model import rock_file
+from rockwear.scenes.parameters import OF_ROCK
+
+ROCKS = {
+    "p_sandstone": {"youngs_modulus": 18e9, "poissons_ratio": 0.18, "ucs": 60e6, "tensile_strength": 7e6,
+                    "source": "[Rojek 2014, 5.1]"},
+    "medium_sandstone": {"youngs_modulus": 13e9, "poissons_ratio": 0.25, "ucs": 50e6, "tensile_strength": 4.2e6,
+                         "fracture_toughness": 0.6e6, "source": "a medium sandstone, ours"},
+    "hawkesbury": {"youngs_modulus": 4.2e9, "poissons_ratio": 0.20, "ucs": 27.4e6, "tensile_strength": 1.9e6,
+                   "friction_angle": 50.6, "source": "[Bahaaddini 2018, table 2], laboratory"}}
+"""{name: options of calibration.fit}."""
+
+
+def words_of(name, folder):
+    """Command line of a fit."""
+    given = {**ROCKS[name], "name": name, "out": str(folder / name)}
+    return [word for option, value in given.items() for word in (f"--{option}", str(value))]
+
+
+def table():
+    """Lines: what each rock of the library is to be and what the laboratory measured."""
+    rows = []
+    for name in rock_file.library():
+        rock = rock_file.read(rock_file.find(name), OF_ROCK)
+        for kind, part in rock.parts.items():
+            rows += [[name, kind, quantity, shown(rock.targets.get(quantity)), shown(found["mean"]),
+                      shown(found["standard_deviation"]), difference(rock.targets.get(quantity), found["mean"]),
+                      found["packings"], rock_file.PROPERTIES[quantity][0]]
+                     for quantity, found in part.measured.items()]
+    return generated.table(["rock", "in", "property", "target", "measured", "± standard deviation", "difference",
+                            "packings", "unit"], rows)
+
+
+def shown(value):
+    """A number, or pairs of them."""
+    if value is None:
+        return "–"
+    return "; ".join(" at ".join(f"{one:.4g}" for one in reversed(pair)) if isinstance(pair, tuple) else f"{pair:.4g}"
+                     for pair in (value if isinstance(value, list) else [value]))
+
+
+def difference(target, mean):
+    """Words on mean over target."""
+    if target is None or isinstance(target, list):
+        return "–"
+    return f"{100 * (mean / target - 1):+.1f} %"
+
+
+def main(folder, words):
+    """-> exit code: the largest of the fits."""
+    codes = [0]
+    if "--read" not in words:
+        for name in words or ROCKS:
+            print(f"{name}:", flush=True)
+            codes.append(rock_fit.main(words_of(name, folder)))
+    folder.mkdir(parents=True, exist_ok=True)
+    try:
+        print(generated.write_page(folder / "rocks.md", table()))
+    except ParameterError as error:
+        print(f"error: {error}", file=sys.stderr)
+        codes.append(2)
+    return max(codes)
+
+
+if __name__ == "__main__":
+    unknown = [word for word in sys.argv[2:] if word not in (*ROCKS, "--read")]
+    if len(sys.argv) < 2 or unknown:
+        sys.exit(f"usage: python3 -m calibration.campaigns.library DIR [{'] ['.join(ROCKS)}] [--read]")
+    sys.exit(main(Path(sys.argv[1]), sys.argv[2:]))
