@@ -289,7 +289,7 @@ class SpecimenOutput(Output):
         rock = self.scene.rock
         return {"rock_positions": rock.positions, "rock_radii": rock.radii, "bonds": rock.pairs,
                 "rock_prescribed": self.scene.prescribed, "gauge": self.scene.inside,
-                "box": np.array([rock.width, rock.height])}
+                "box": np.array([rock.width, rock.height]), **({} if rock.grains is None else {"grains": rock.grains})}
 
     def snapshot(self):
         """Arrays that show the scene now."""
