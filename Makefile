@@ -9,7 +9,8 @@ TO_TEST := python3-pytest python3-pytest-xdist
 TO_LINT := python3-flake8
 
 .DEFAULT_GOAL := help
-.PHONY: help setup setup-test run test test-kernels validate bench campaigns campaign-wear campaign-uniaxial lint clean
+.PHONY: help setup setup-test run test test-kernels validate bench campaigns campaign-wear campaign-uniaxial campaign-grains \
+        lint clean
 
 # $(call install,packages,modules): the missing packages, where there is apt-get; then each module must be found.
 define install
@@ -66,6 +67,9 @@ campaign-wear: setup ## test tooth and ripper worn over many cycles, sharp and w
 
 campaign-uniaxial: setup ## the laboratory: bond laws, softening slopes, micro-parameters (hours; resumes)
 	$(PYTHON) -m calibration.campaigns.uniaxial $(OUT)/campaign-uniaxial
+
+campaign-grains: setup ## the Hawkesbury sandstone of grains, and what its strength depends on (hours; resumes)
+	$(PYTHON) -m calibration.campaigns.grains $(OUT)/campaign-grains
 
 lint: ## check the code with flake8
 	$(call install,$(TO_LINT),flake8)

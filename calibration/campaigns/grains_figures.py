@@ -1,0 +1,105 @@
+"""Figures of the campaign of grains: curves and failure over confinement, and one for each parameter of the study."""
+import numpy as np
+from matplotlib.collections import LineCollection
+
+from calibration.campaigns.grains_tables import ELASTIC, STATED, STRENGTHS, trend_of
+from calibration.campaigns.uniaxial_figures import CRACK, limits_of, thinned
+from rockwear.report import shapes
+from rockwear.report.plots import MM, canvas, discs, frame
+
+ARROWS = {"rises": "↗", "falls": "↘", "unchanged": "→"}
+
+
+def drawn(own, points):
+    """(name, Figure) of all that the runs allow. own: {(test, seed): RunFolder} of the calibrated rock; points:
+    {parameter: as of grains_tables.points}."""
+    if own:
+        yield "grains_curves", curves(own)
+        yield "grains_failure", failures(own)
+    for parameter, by_property in points.items():
+        if any(len(values) > 1 for values in by_property.values()):
+            name = parameter.partition(",")[0].partition(" kn/")[0].replace(" ", "_")
+            yield f"grains_{name}", parameter_figure(parameter, by_property)
+
+
+def pressure(test):
+    """MPa of confinement."""
+    return float(test.split()[0]) if "MPa" in test else 0.0
+
+
+def compressions(own):
+    """Tests in compression, by confinement."""
+    return sorted({test for test, _ in own if test != "tension"}, key=pressure)
+
+
+def curves(own):
+    """Stress over strain: the first packing bold, the others thin [Bahaaddini 2018, figs 6, 8]."""
+    figure, (left, right) = canvas(10, 4.2, 1, 2, width_ratios=(1.6, 1))
+    for axes, tests in ((left, compressions(own)), (right, ["tension"])):
+        for k, test in enumerate(tests):
+            runs = [run for (name, _), run in sorted(own.items()) if name == test]
+            for run in runs[::-1]:
+                first = run is runs[0]
+                strain = thinned(run.column("platen_strain"))
+                axes.plot(100 * strain, 1e-6 * thinned(run.column("stress")) - pressure(test), color=f"C{k}",
+                          linewidth=1.8 if first else 0.6, alpha=1 if first else 0.45,
+                          label=f"{pressure(test):g} MPa" if first else None)
+        axes.set(xlabel="strain between the platens, %", ylim=(0, None), xlim=(0, None))
+    left.set(title="compression over confinement", ylabel="σ₁ - σ₃, MPa")
+    left.legend(title="σ₃", fontsize=9)
+    right.set(title="direct tension", ylabel="stress, MPa")
+    return figure
+
+
+def failures(own):
+    """Cracks in the grains at the end of each test of the first packing, loaded from left and right."""
+    tests = ["tension", *compressions(own)]
+    seed = min(seed for _, seed in own)
+    tests = [test for test in tests if (test, seed) in own]
+    figure, panels = canvas(11, 2.5 * -(-len(tests) // 3), -(-len(tests) // 3), 3)
+    for axes in panels[len(tests):]:
+        axes.set_axis_off()
+    for axes, test in zip(panels, tests):
+        failure(axes, own[test, seed], f"σ₃ = {pressure(test):g} MPa" if test != "tension" else test)
+    return figure
+
+
+def failure(axes, run, title):
+    """Grains in pale colours, broken bonds between them as red lines."""
+    model, shot = run.model, run.snapshot(-1)
+    places, radii = shot["rock_positions"], model["rock_radii"]
+    colour = np.random.default_rng(1).random(int(model["grains"].max()) + 1)[model["grains"]]
+    discs(axes, places, 1.1 * radii, array=colour, cmap="Pastel2", linewidths=0)
+    broken = model["bonds"][shot["status"] != 0]
+    axes.add_collection(LineCollection(MM * shapes.cracks(places, radii, broken, near=2), colors=CRACK, linewidths=1))
+    frame(axes, limits_of(run), f"{title}: {len(broken)} broken")
+    axes.set_xlabel("")
+
+
+def parameter_figure(parameter, by_property):
+    """Strengths and elastic constants over a parameter, each over its mean; packings as points, means as lines."""
+    figure, panels = canvas(9, 3.6, 1, 2)
+    for axes, names in zip(panels, (STRENGTHS, ELASTIC)):
+        for k, (name, words) in enumerate(names.items()):
+            values = by_property.get(name, {})
+            if len(values) < 2:
+                continue
+            mean = np.mean([np.mean(ys) for ys in values.values()])
+            places = list(values)
+            axes.plot(places, [np.mean(values[x]) / mean for x in places], "-", color=f"C{k}",
+                      label=f"{words}: {_words(parameter, name, values)}")
+            for x, ys in values.items():
+                axes.plot([x] * len(ys), np.array(ys) / mean, "o", color=f"C{k}", markersize=4, alpha=0.6)
+        axes.set(xlabel=parameter, xscale="log", ylim=(0, None))
+        axes.set_xticks(places, [f"{x:.3g}" for x in places])
+        axes.minorticks_off()
+        axes.legend(fontsize=8, title="[Bahaaddini 2018] | ours", title_fontsize=8)
+    panels[0].set(title="strengths over their mean")
+    panels[1].set(title="elastic constants over their mean")
+    return figure
+
+
+def _words(parameter, name, values):
+    """The stated trend and ours."""
+    stated, law = STATED.get(parameter, {}).get(name), trend_of(values)
+    return f"{ARROWS.get(stated, '?')} | {ARROWS.get(law.word, '?') if law else '?'}"
