@@ -57,7 +57,7 @@ def resistance_curve(*, force, opening, width, notch):
 
     force: (n,) N/m; opening: (n,) m, at the load line; width: W, m; notch: alpha of the notch. nan where the test is
     too short.
-    - modulus, E' (Pa): from the first slope of force over opening, as the notch is known;
+    - modulus, E' (Pa): from the first forces over openings, as the notch is known;
     - crack, (n,): alpha of the sharp crack as compliant as the specimen at that moment (it unloads to the origin);
     - intensity, (n,): K (Pa sqrt(m)) of that crack;
     - dissipated, (n,): J per m of thickness, the work less P u/2;
@@ -77,7 +77,8 @@ def resistance_curve(*, force, opening, width, notch):
         nothing = np.full(len(force), math.nan)
         return dict(modulus=math.nan, crack=nothing, intensity=nothing, dissipated=nothing,
                     peak_intensity=float(top * intensity_factor(notch) / math.sqrt(width)), energy=math.nan)
-    modulus = float(np.polyfit(opening[rows], force[rows], 1)[0] * compliance(notch))
+    # Through the origin: the waves that the first motion sends through the specimen then count for little.
+    modulus = float(force[rows] @ opening[rows] / (opening[rows] @ opening[rows]) * compliance(notch))
     loaded = force > 0
     flexibility = np.divide(modulus * opening, force, out=np.full(len(force), np.inf), where=loaded)
     crack = np.where(np.arange(len(force)) < rows[0], notch, equivalent_crack(flexibility))
