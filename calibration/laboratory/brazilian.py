@@ -97,8 +97,8 @@ class BrazilianTest(SpecimenTest):
         for n, part in self.central_bonds:
             if self.bonds.status[n] != INTACT:
                 continue
-            interaction, phys = O.interactions[self.rock.pairs[n].tolist()], self.bonds.contact(n)
-            force = phys.normalForce + phys.shearForce
+            interaction = O.interactions[self.rock.pairs[n].tolist()]
+            force = interaction.phys.normalForce + interaction.phys.shearForce
             branch = O.bodies[interaction.id2].state.pos - O.bodies[interaction.id1].state.pos
             along -= part * force[0] * branch[0]
             across -= part * force[1] * branch[1]
