@@ -12,7 +12,7 @@ GROUPS = groups(
     Parameter("size", 0.08, "m", above_zero, "W, from the load line to the back; the specimen is 1.2 W x 1.25 W",
               "ASTM E399"),
     Parameter("notch", 0.4, "", number(fracture.SHORTEST, 0.8), "length of the notch over W", "measured"),
-    without=("width", "height", "grip", "gauge", "platens"), speed=0.03, drop=0.15, strain_max=0.02,
+    without=("width", "height", "grip", "gauge", "platens"), speed=0.02, drop=0.15, strain_max=0.02,
     record_strain=1e-5)
 PIN, PIN_PLACE, MOUTH = 0.125, 0.275, 0.25
 """Over W: half the length of a row of pin discs, its middle's distance from the notch, the load line's from the front,
