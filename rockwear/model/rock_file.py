@@ -258,7 +258,9 @@ class RockPresets(Presets):
 
     declared: {name: Parameter} of what its parameters may be; only: names of those that the scene has a use for, None
     for all. Values hold at the resolution of the file and are converted to the radii of the scene by
-    Parameter.size_power, with the mean of the smallest and largest radius for the size.
+    Parameter.size_power, with the mean of the smallest and largest radius for the size. Elasticity and strength then
+    stay. Toughness stays with the laws whose strengths are in Pa alone: a bond of the damage law takes Rn^2/2 (1/kn +
+    1/H) over its part of the crack to break, which grows with the radius as long as H does not.
     """
 
     def __init__(self, declared, *, only=None):
