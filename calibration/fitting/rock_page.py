@@ -127,7 +127,7 @@ def page(found, *, micro, targets, values):
     lines += [f"They hold at radii of {radii} mm in the plane. Standard errors of what was varied, from the scatter of "
               "packings: " + ", ".join(f"{name} {100 * error:.1f} %" for name, error in zip(micro.names, found.error))
               + "." + (f" Not varied: {', '.join(micro.fixed)}, for want of a target." if micro.fixed else ""), ""]
-    lines += ["## Steps", "", f"{found.seconds / 60:.0f} minutes, without runs that were kept from an earlier start. Means "
+    lines += ["## Steps", "", f"{found.seconds / 60:.0f} minutes, without runs kept from an earlier start. Means "
               "over the packings of each stage:", ""]
     lines += generated.table(
         ["stage", *micro.names, *(o.name for o in micro.observables)],
