@@ -18,9 +18,7 @@ ROCKS = {
     "p_sandstone": {"youngs_modulus": 18e9, "poissons_ratio": 0.18, "ucs": 60e6, "tensile_strength": 7e6,
                     "source": "[Rojek 2014, 5.1]"},
     "medium_sandstone": {"youngs_modulus": 13e9, "poissons_ratio": 0.25, "ucs": 50e6, "tensile_strength": 4.2e6,
-                         "fracture_toughness": 0.6e6, "source": "a medium sandstone, ours"},
-    "hawkesbury": {"youngs_modulus": 4.2e9, "poissons_ratio": 0.20, "ucs": 27.4e6, "tensile_strength": 1.9e6,
-                   "friction_angle": 50.6, "source": "[Bahaaddini 2018, table 2], laboratory"}}
+                         "fracture_toughness": 0.6e6, "source": "a medium sandstone, ours"}}
 """{name: options of calibration.fit}."""
 
 

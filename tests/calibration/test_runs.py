@@ -26,8 +26,8 @@ def started():
     yield from ((script, {**wear.COARSE, **values}) for script, values in wear.CASES.values())
     for values in [*bench.jobs().values(), sharp_and_worn.CUT, particle_size.CUT]:
         yield wear.TOOTH, values
-    for law in ("brittle", "coulomb", "cohesive"):
-        yield from runs_of_a_fit(law).started[::3]
+    for law, targets in (("brittle", {}), ("coulomb", {}), ("cohesive", {"fracture_toughness": 0.9e6})):
+        yield from runs_of_a_fit(law, **targets).started[::3]
     for cases, common, _ in uniaxial.CAMPAIGNS.values():
         yield from ((uniaxial.SCRIPT, {**common, **values, "test": "tension"}) for values in cases.values())
     yield from ((uniaxial.SCRIPT, {**uniaxial.SMALL, **values, "speed": loading_speed.SPEEDS[0]})
