@@ -64,18 +64,18 @@ class PairDriver(base.Engine):
         self.second.angVel = (self.spin - normal.cross(slip) / self.radius) / O.dt
 
 
-def drive_pair(law, un, ut, *, radii=(1.25e-3, 1.25e-3), axes=None, spin=(0.0, 0.0, 0.0), swapped=False):
+def drive_pair(law, un, ut, *, radii=(1.25e-3, 1.25e-3), axes=None, spin=(0.0, 0.0, 0.0), swapped=False, period=1):
     """Make a bond of `law` between two particles in YADE and drive it along a path. -> Response.
 
     law: of rockwear.kernels.bond_laws; un: (n,) m; ut: (n,) or (n, 2) m, along one or two tangents; the path starts at
     zero; radii: m; axes: 3x3, normal and tangents as columns; spin: rad a step, turns the pair as a rigid body;
-    swapped: the particle that stays gets the higher id.
+    swapped: the particle that stays gets the higher id; period: steps between visits of the engine of the bond.
     """
     un, ut = np.asarray(un, float), np.asarray(ut, float).reshape(len(un), -1)
     ut = np.pad(ut, ((0, 0), (0, 2 - ut.shape[1])))
     axes = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]]) if axes is None else np.asarray(axes, float)
     _put_pair(radii, axes[:, 0], swapped, law.yade_law)
-    bonds = yade_scene.CARRIERS[law.yade_law](pairs=np.array([[0, 1]]), law=law, clock=lambda: O.time, period=1)
+    bonds = yade_scene.CARRIERS[law.yade_law](pairs=np.array([[0, 1]]), law=law, clock=lambda: O.time, period=period)
     utils.createInteraction(0, 1)
     O.dt = 0.0
     O.step()
