@@ -200,8 +200,9 @@ class CpmBonds(BondLog):
         """Strain energy (J) of all bonds, sum of Fn^2/2kn + Ft^2/2kt with the secant kn of softened ones."""
         self.look_at_all()
         energy = []
-        for _, _, phys, _ in self._intact().values():
-            kn = phys.kn * (1.0 - phys.omega if phys.epsN > 0.0 else 1.0)
+        for _, geom, phys, _ in self._intact().values():
+            # epsN would tell tension too, but YADE does not save it.
+            kn = phys.kn * (1.0 - phys.omega if phys.normalForce.dot(geom.normal) < 0.0 else 1.0)
             energy.append(0.5 * (phys.normalForce.squaredNorm() / kn + phys.shearForce.squaredNorm() / phys.ks))
         return math.fsum(energy)
 
