@@ -3,6 +3,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy.stats import linregress
 
 from calibration.campaigns import grains, grains_tables
 from calibration.campaigns.trends import trend, verdict
@@ -15,6 +16,12 @@ def test_a_power_law_is_found_exactly():
     found = trend(X, 3 * X**0.5)
     assert found.exponent == pytest.approx(0.5) and found.change == pytest.approx(math.sqrt(10) - 1)
     assert found.error == pytest.approx(0, abs=1e-9) and found.word == "rises"
+
+
+def test_the_error_of_a_trend_is_that_of_linear_regression():
+    y = X**0.3 * (1 + 0.1 * np.array([1, -1, -1, 1, 0, 0.5]))
+    regression = linregress(np.log(X), np.log(y))
+    assert trend(X, y).error == pytest.approx(regression.stderr * math.log(10))
 
 
 @pytest.mark.parametrize("y, word", [(X**0.5, "rises"), (X**-0.2, "falls"), (X**0.02, "unchanged"),
