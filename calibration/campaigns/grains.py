@@ -44,8 +44,8 @@ def rock():
 def tests(*confinements):
     """{test: (script, values)}; what their speeds do: calibration/results/grains.md."""
     uniaxial, triaxial = "yade_scripts/uniaxial.py", "yade_scripts/triaxial.py"
-    return {"tension": (uniaxial, dict(test="tension", speed=0.02, strain_max=0.003, record_strain=2e-6)),
-            "compression": (uniaxial, dict(test="compression", speed=0.1, strain_max=0.02, record_strain=4e-5)),
+    return {"compression": (uniaxial, dict(test="compression", speed=0.1, strain_max=0.02, record_strain=4e-5)),
+            "tension": (uniaxial, dict(test="tension", speed=0.02, strain_max=0.003, record_strain=2e-6)),
             **{f"{1e-6 * pressure:g} MPa": (triaxial, dict(confinement=pressure, speed=0.2, strain_max=0.035, drop=0.7,
                                                            record_strain=1e-4))
                for pressure in confinements}}
