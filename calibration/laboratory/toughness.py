@@ -79,7 +79,7 @@ class ToughnessTest(SpecimenTest):
         self.inside = np.concatenate(self.lips)
 
     def _mean_motion(self):
-        return np.zeros(self.rock.count), np.zeros(self.rock.count)
+        return np.zeros_like(self.rock.positions)
 
     def opening(self):
         """m, of the notch at the load line."""

@@ -2,11 +2,14 @@
 
 The specimen is under uniaxial stress: its ends are the platens of `loaded_specimen`, its sides are free.
 """
-from calibration.laboratory.loaded_specimen import SpecimenOutput, SpecimenTest, groups, measured
+from calibration.laboratory.loaded_specimen import IN_SPACE, SpecimenOutput, SpecimenTest, groups, measured
 from rockwear.kernels.parameter import Parameter, choice
 
-GROUPS = groups(
-    Parameter("test", "compression", "", choice("compression", "tension"), "direction of loading", "[Rojek 2003, 5.1]"))
+TEST = Parameter("test", "compression", "", choice("compression", "tension"), "direction of loading",
+                 "[Rojek 2003, 5.1]")
+GROUPS = groups(TEST)
+GROUPS_IN_SPACE = groups(
+    TEST, rock=IN_SPACE, width=0.05, height=0.025, depth=0.025, radius=1.5e-3, bond_law="cohesive", kn=55e6, kt=14e6)
 
 
 class UniaxialOutput(SpecimenOutput):
@@ -18,7 +21,7 @@ class UniaxialOutput(SpecimenOutput):
 
 
 class UniaxialTest(SpecimenTest):
-    """Uniaxial compression or direct tension along x. values: {name: value} of all GROUPS.
+    """Uniaxial compression or direct tension along x. values: {name: value} of all GROUPS, or of GROUPS_IN_SPACE.
 
     Speed: the default is the fastest at which, and below which, strength and E of every packing stay within 2 % of
     those at 0.0125 m/s, for the bonds of [Rojek 2003] and [Rojek 2014], in compression and tension (make bench

@@ -85,6 +85,16 @@ class RockAssembly:
         return (self.width, self.height) if self.depth is None else (self.width, self.height, self.depth)
 
     @property
+    def dimensions(self):
+        """2 in the plane, 3 in space."""
+        return len(self.size)
+
+    @property
+    def centre(self):
+        """(d,) m of the box; z = 0 is in its middle."""
+        return 0.5 * np.array([self.width, self.height, *[0.0] * (self.dimensions - 2)])
+
+    @property
     def volume(self):
         """m2 or m3 that the particles fill with their pores."""
         return float(self.masses.sum()) / self.density
@@ -281,12 +291,12 @@ class CutOut(RockAssembly):
 
 
 class Arranged(RockAssembly):
-    """Equal discs of one radius (m) at given places (n, 2) m of a box, the touching ones bonded: lattices and the
-    like."""
+    """Equal discs or spheres of one radius (m) at given places (n, 2 or 3) m of a box, the touching ones bonded:
+    lattices and the like. depth: of a box in space, None in the plane."""
 
-    def __init__(self, *, positions, radius, width, height, density):
+    def __init__(self, *, positions, radius, width, height, density, depth=None):
         radii = np.full(len(positions), float(radius))
-        super().__init__(positions=positions, radii=radii, width=width, height=height, density=density,
+        super().__init__(positions=positions, radii=radii, width=width, height=height, depth=depth, density=density,
                          pairs=packing.contacts(np.asarray(positions, float), radii, 1e-6 * radius))
 
 
