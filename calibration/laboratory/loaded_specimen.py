@@ -1,7 +1,7 @@
 """Laboratory tests: a specimen of bonded rock, discs or spheres, held and loaded at its two ends.
 
-The platens are the specimen's own particles at its left and right ends, which move along x at a constant speed, free across
-it and free to turn: each end is perfectly capped and without friction. Rough platens hold these particles across
+The platens are the specimen's own particles at its left and right ends, which move along x at a constant speed, free
+across it and free to turn: each end is perfectly capped and without friction. Rough platens hold these particles across
 and against turning as well.
 """
 import math

@@ -316,8 +316,13 @@ class Block(RockAssembly):
                 f"at most radius = {radius:g}: bonds join neighbours", "m")
 
         def make():
-            made = packing.pack(box=box, radius_min=radius, radius_max=radius, porosity=porosity, seed=seed,
-                                jammed=bonded)
+            try:
+                made = packing.pack(box=box, radius_min=radius, radius_max=radius, porosity=porosity, seed=seed,
+                                    jammed=bonded)
+            except ParameterError as error:
+                # The kernel's word for it is not that of the scene.
+                name = "radius" if error.name.startswith("radius") else error.name
+                raise ParameterError(name, error.value, error.rule, error.unit) from None
             return {"positions": made.positions, "radii": made.radii}
 
         stored = cached(make, box=list(box), radius=radius, porosity=porosity, seed=seed, jammed=bonded)

@@ -6,6 +6,7 @@ from matplotlib.colors import to_rgba
 from rockwear.report import palette, shapes
 from rockwear.report.page import Section
 from rockwear.report.plots import MM, canvas, discs, frame, save
+from rockwear.report.solid import ABOVE, SIDE, READABLE, behind_middle, paint, panels_without_axes, sphere_polygons
 
 ARROWS = 900
 """Largest number of arrows in the displacement field."""
@@ -28,6 +29,10 @@ def failure(run):
     """Section of the specimen at the end."""
     if not run.has("rock_prescribed", "rock_radii", "bonds", "displacement", "softening"):
         return None
+    if "block" in run.model:
+        return Section("Failure", "Left: the specimen from above. Right: the slab behind its middle, from the side. "
+                       "The darker a sphere, the more of its bonds are soft or broken; the motion of grey spheres is "
+                       "prescribed.", [save(run, "failure", block(run))])
     return Section("Failure", "Left: displacements since the start, less their mean, arrows enlarged, colour their "
                    "size. Right: broken bonds in red, drawn across the bond; the darker a disc, the softer its bonds; "
                    "the motion of grey discs is prescribed.", [save(run, "failure", specimen(run))])
@@ -70,6 +75,18 @@ def specimen(run):
     return figure
 
 
+def block(run):
+    """The specimen in space from above, and cut open."""
+    figure, panels = panels_without_axes(12, 4.5, 1, 2)
+    shot, radii = run.snapshot(-1), run.model["rock_radii"]
+    places, colours = shot["rock_positions"], colours_by_softness(run, shot)
+    for axes, view, shown in ((panels[0], ABOVE, np.ones(len(radii), bool)),
+                              (panels[1], SIDE, behind_middle(places, radii))):
+        paint(axes, sphere_polygons(places[shown], radii[shown], colours[shown], view), darkest=READABLE)
+    panels[0].set_title(f"{np.count_nonzero(shot['status'])} broken bonds")
+    return figure
+
+
 def draw_displacements(axes, run, shot, longest):
     """Displacements less their mean, the largest drawn `longest` mm long. -> what a colour bar is drawn of"""
     places, moved = shot["rock_positions"], shot["displacement"]
@@ -83,13 +100,19 @@ def draw_displacements(axes, run, shot, longest):
 
 def draw_cracks(axes, run, shot):
     """Discs by the softness of their bonds, and broken bonds. -> their number"""
+    bonds = run.model["bonds"]
+    discs(axes, shot["rock_positions"], run.model["rock_radii"], facecolors=colours_by_softness(run, shot))
+    broken = bonds[shot["status"] != 0]
+    lines = shapes.cracks(shot["rock_positions"], run.model["rock_radii"], broken)
+    axes.add_collection(LineCollection(MM * lines, colors=palette.CRACK, linewidths=1))
+    return len(broken)
+
+
+def colours_by_softness(run, shot):
+    """(n, 4) colours of the particles, the mean softness of their bonds."""
     bonds, count = run.model["bonds"], len(run.model["rock_radii"])
     softness = np.bincount(bonds.ravel(), np.repeat(shot["softening"], 2), count)
     softness /= np.maximum(np.bincount(bonds.ravel(), minlength=count), 1)
     colours = palette.DAMAGE(np.clip(softness, 0, 1))
     colours[run.model["rock_prescribed"]] = to_rgba(palette.FIXED)
-    discs(axes, shot["rock_positions"], run.model["rock_radii"], facecolors=colours)
-    broken = bonds[shot["status"] != 0]
-    lines = shapes.cracks(shot["rock_positions"], run.model["rock_radii"], broken)
-    axes.add_collection(LineCollection(MM * lines, colors=palette.CRACK, linewidths=1))
-    return len(broken)
+    return colours
