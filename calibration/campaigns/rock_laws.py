@@ -23,17 +23,17 @@ from rockwear.report import palette, plots
 from rockwear.report.folder import RunFolder
 
 UNIAXIAL, CONFINED, TOUGHNESS = (f"yade_scripts/{name}.py" for name in ("uniaxial", "triaxial", "toughness"))
-CONFINEMENTS = 0.0, 5e6, 10e6
+CONFINEMENTS = 0.0, 10e6
 
 ROCK = dict(kn=20e9, kt=8e9, mu=0.8, bond_law="cohesive", bond_tension=7e6, bond_cohesion=20e6,
             bond_fracture_energy=30.0)
 """A sandstone to begin with, of softening bonds; all discs of 1 to 1.5 mm."""
 GRAINS = dict(ROCK, grain_edge=3e-3)
-BOX = dict(width=0.08, height=0.04)
-"""Compressed along its length; 650 discs."""
+BOX, SMALL_BOX = dict(width=0.08, height=0.04), dict(width=0.05, height=0.025)
+"""Loaded along their length; 650 and 250 discs of 1 to 1.5 mm, the smaller one for the finest discs' sake."""
 SPEED, PULL = 0.04, 0.02
 """Of each platen, m/s."""
-SIZE = 0.08
+SIZE, SMALL_SIZE = 0.08, 0.05
 """Of the toughness specimen, m."""
 
 LAWS = {
@@ -71,7 +71,7 @@ def at_size(values, factor):
 
 
 CASES = {
-    "laws": ({case: values for case, values in LAWS.items()}, (1, 2, 3), CONFINEMENTS),
+    "laws": (LAWS, (1, 2), CONFINEMENTS),
     "resolution": ({f"{kind}, r = {radius:g} mm": at_size(values, factor) for kind, values in
                     (("discs", ROCK), ("grains", GRAINS)) for radius, factor in FINENESS.items()}, (1, 2, 3, 4, 5),
                    (0.0,)),
@@ -85,15 +85,16 @@ HEADS = {"E": "E, GPa", "nu": "ν", "UCS": "UCS, MPa", "tension": "σt, MPa", "r
          "m_i": "m_i", "K": "K_IC, MPa√m", "G": "G_f, J/m²"}
 
 
-def tests(values, confinements, seed, tough):
+def tests(campaign, values, seed):
     """{test: (script, parameters)} of one packing of a rock."""
-    blocked = values.get("rotation")
+    confinements, blocked = CASES[campaign][2], values.get("rotation")
+    box, size = (SMALL_BOX, SMALL_SIZE) if campaign == "resolution" else (BOX, SIZE)
     common = dict(values, seed=seed, report="false", snapshot_period=1)
-    found = {f"confined {1e-6 * confinement:g}": (CONFINED, dict(common, **BOX, speed=SPEED, confinement=confinement))
+    found = {f"confined {1e-6 * confinement:g}": (CONFINED, dict(common, **box, speed=SPEED, confinement=confinement))
              for confinement in confinements}
-    found["tension"] = UNIAXIAL, dict(common, **BOX, speed=PULL, test="tension")
-    if tough and not blocked:
-        found["toughness"] = TOUGHNESS, dict(common, size=SIZE)
+    found["tension"] = UNIAXIAL, dict(common, **box, speed=PULL, test="tension")
+    if campaign != "relations" and not blocked:
+        found["toughness"] = TOUGHNESS, dict(common, size=size)
     return found
 
 
@@ -104,27 +105,27 @@ def folder_of(case, test, seed):
 
 def start(runs, campaign):
     """Queue a campaign, seed by seed. -> {(case, test, seed): Future of its RunFolder}."""
-    cases, seeds, confinements = CASES[campaign]
+    cases, seeds, _ = CASES[campaign]
     return {(case, test, seed): runs.start(f"{campaign}/{folder_of(case, test, seed)}", script, **values)
             for seed in seeds for case, rock in cases.items()
-            for test, (script, values) in tests(rock, confinements, seed, campaign != "relations").items()}
+            for test, (script, values) in tests(campaign, rock, seed).items()}
 
 
 def measured(folder, campaign):
     """{case: {quantity: (seeds,) values}} of the runs that exist."""
-    cases, seeds, confinements = CASES[campaign]
+    cases, seeds, _ = CASES[campaign]
     found = {}
     for case, rock in cases.items():
-        rows = [row for seed in seeds if (row := _of_packing(folder / campaign, case, rock, confinements, seed))]
+        rows = [row for seed in seeds if (row := _of_packing(folder, campaign, case, rock, seed))]
         if rows:
             found[case] = {name: np.array([row.get(name, math.nan) for row in rows]) for name in QUANTITIES}
             found[case].update(_envelope(rows))
     return found
 
 
-def _of_packing(folder, case, rock, confinements, seed):
-    runs = {test: RunFolder(folder / folder_of(case, test, seed)) for test in tests(rock, confinements, seed, True)
-            if (folder / folder_of(case, test, seed) / "summary.json").exists()}
+def _of_packing(folder, campaign, case, rock, seed):
+    places = {test: folder / campaign / folder_of(case, test, seed) for test in tests(campaign, rock, seed)}
+    runs = {test: RunFolder(place) for test, place in places.items() if (place / "summary.json").exists()}
     unconfined, tension = runs.get("confined 0"), runs.get("tension")
     if unconfined is None or tension is None:
         return None
@@ -141,7 +142,7 @@ def _of_packing(folder, case, rock, confinements, seed):
 def _envelope(rows):
     """phi and m_i of all packings together, with half of their 95 % intervals as scatter."""
     points = [point for row in rows for point in row["points"]]
-    if len({point["sigma3"] for point in points}) < 3:
+    if len({point["sigma3"] for point in points}) < 2 or len(points) < 3:
         return {}
     try:
         fit = fitted(points, [row["tension"] for row in rows])
