@@ -9,8 +9,8 @@ TO_TEST := python3-pytest python3-pytest-xdist
 TO_LINT := python3-flake8
 
 .DEFAULT_GOAL := help
-.PHONY: help setup setup-test run test test-kernels validate bench campaigns campaign-wear campaign-uniaxial campaign-grains \
-        lint clean
+.PHONY: help setup setup-test run test test-kernels validate bench campaigns campaign-wear campaign-uniaxial \
+        campaign-grains campaign-rocks lint clean
 
 # $(call install,packages,modules): the missing packages, where there is apt-get; then each module must be found.
 define install
@@ -70,6 +70,9 @@ campaign-uniaxial: setup ## the laboratory: bond laws, softening slopes, micro-p
 
 campaign-grains: setup ## the Hawkesbury sandstone of grains, and what its strength depends on (hours; resumes)
 	$(PYTHON) -m calibration.campaigns.grains $(OUT)/campaign-grains
+
+campaign-rocks: setup ## what bond laws and rock properties do to a rock, at three resolutions (hours; resumes)
+	$(PYTHON) -m calibration.campaigns.rock_laws $(OUT)/campaign-rocks
 
 lint: ## check the code with flake8
 	$(call install,$(TO_LINT),flake8)
