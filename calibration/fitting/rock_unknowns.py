@@ -15,9 +15,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-LATTICE_NU, LATTICE_E = 0.04, 0.69
-"""Random packings against the triangular lattice of equal discs: nu is so much larger, E so many times as large
-(calibration/results/uniaxial.md)."""
+from calibration.fitting.relations import elastic_guess
+
 SHEAR, RATIO, TENSION, FRICTION = 3.0, 8.1, 1.6, 0.7
 """First guesses: shear over tensile strength of a bond at this UCS over tensile strength, with whose square it goes; a
 bond's tensile strength over the rock's; friction."""
@@ -102,9 +101,7 @@ class Micro:
         self.low, self.high = np.log([bounds[name] for name in guess]).T
 
     def _first_guess(self, t):
-        nu = t.poissons_ratio - LATTICE_NU
-        ratio = min(max((1 - 3 * nu) / (1 + nu), 0.02), 3.5)
-        kn = t.youngs_modulus / (LATTICE_E * 2 * math.sqrt(3) * (1 + ratio) / (3 + ratio))
+        kn, ratio = elastic_guess(youngs_modulus=t.youngs_modulus, poissons_ratio=t.poissons_ratio)
         tension = TENSION * t.tensile_strength
         shear = min(max(SHEAR * (t.ucs / t.tensile_strength / RATIO)**2, 0.7), 8.0)
         toughness = t.fracture_toughness or TOUGHNESS * t.tensile_strength
