@@ -17,13 +17,12 @@ import numpy as np
 
 from calibration import generated
 from calibration.campaigns.runs import RunFailed, Runs
-from calibration.laboratory.envelope import fitted
-from rockwear.kernels.checks import ParameterError
 from rockwear.report import palette, plots
 from rockwear.report.folder import RunFolder
 
 UNIAXIAL, CONFINED, TOUGHNESS = (f"yade_scripts/{name}.py" for name in ("uniaxial", "triaxial", "toughness"))
-CONFINEMENTS = 0.0, 10e6
+CONFINED_AT = 10e6
+"""Pa."""
 
 ROCK = dict(kn=20e9, kt=8e9, mu=0.8, bond_law="cohesive", bond_tension=7e6, bond_cohesion=20e6,
             bond_fracture_energy=30.0)
@@ -73,7 +72,7 @@ def at_size(values, factor):
 
 
 CASES = {
-    "laws": (LAWS, (1, 2), CONFINEMENTS),
+    "laws": (LAWS, (1, 2), (0.0, CONFINED_AT)),
     "resolution": ({f"{kind}, r = {radius:g} mm": at_size(values, factor) for kind, values in
                     (("discs", ROCK), ("grains", GRAINS)) for radius, factor in FINENESS.items()}, (1, 2, 3),
                    (0.0,)),
@@ -122,7 +121,6 @@ def measured(folder, campaign):
         rows = [row for seed in seeds if (row := _of_packing(folder, campaign, case, rock, seed))]
         if rows:
             found[case] = {name: np.array([row.get(name, math.nan) for row in rows]) for name in QUANTITIES}
-            found[case].update(_envelope(rows))
     return found
 
 
@@ -137,31 +135,22 @@ def _of_packing(folder, campaign, case, rock, seed):
     row["ratio"] = row["UCS"] / row["tension"]
     if "toughness" in runs:
         row.update(K=runs["toughness"].result("fracture_toughness"), G=runs["toughness"].result("fracture_energy"))
-    row["points"] = [{"sigma3": 1e6 * float(test.split()[1]), "peak_stress": run.result("peak_stress")}
-                     for test, run in runs.items() if test.startswith("confined")]
+    confined = runs.get(f"confined {1e-6 * CONFINED_AT:g}")
+    if confined is not None:
+        row.update(_envelope(row["UCS"], confined.result("peak_stress")))
     return row
 
 
-def _envelope(rows):
-    """phi and m_i of all packings together, with half of their 95 % intervals as scatter."""
-    points = [point for row in rows for point in row["points"]]
-    if len({point["sigma3"] for point in points}) < 2 or len(points) < 3:
-        return {}
-    try:
-        fit = fitted(points, [row["tension"] for row in rows])
-    except ParameterError:
-        return {}
-    found = {"phi": fit["mohr_coulomb"]["friction_angle"]}
-    if "refused" not in fit["hoek_brown"]:
-        found["m_i"] = fit["hoek_brown"]["m_i"]
-    return {name: (part["value"], part["half_width"]) for name, part in found.items()}
+def _envelope(ucs, confined):
+    """phi (degrees) of the line and m_i of the Hoek-Brown curve through UCS and the strength at CONFINED_AT, Pa."""
+    slope = (confined - ucs) / CONFINED_AT
+    return {"phi": math.degrees(math.asin((slope - 1) / (slope + 1))),
+            "m_i": ((confined - CONFINED_AT)**2 - ucs**2) / (ucs * CONFINED_AT)}
 
 
 def cell(name, values):
     """Mean ± scatter of a quantity."""
     scale = QUANTITIES[name][0]
-    if isinstance(values, tuple):
-        return f"{values[0] * scale:.3g} ± {values[1] * scale:.2g}"
     values = values[np.isfinite(values)] * scale
     if not len(values):
         return "–"
@@ -170,8 +159,7 @@ def cell(name, values):
 
 def table(found):
     """Lines of Markdown: a row a case."""
-    columns = [name for name in QUANTITIES if any(cell(name, values[name]) not in ("–", "nan ± nan")
-                                                  for values in found.values())]
+    columns = [name for name in QUANTITIES if any(cell(name, values[name]) != "–" for values in found.values())]
     return generated.table(["", *(HEADS[name] for name in columns)],
                            [[case, *(cell(name, values[name]) for name in columns)] for case, values in found.items()])
 
@@ -241,9 +229,10 @@ def write(folder):
                 continue
             counts = {len(values["UCS"]) for values in cases.values()}
             lines += [f"## {TITLES[campaign]}", "", f"Mean ± standard deviation of {min(counts)} to {max(counts)} "
-                      "packings (φ and m_i: of all together, with half the 95 % interval).", "", *table(cases)]
+                      f"packings. φ and m_i: from UCS and the strength at {1e-6 * CONFINED_AT:g} MPa.", "",
+                      *table(cases)]
             rows += [[campaign, case, name, *values] for case, quantities in cases.items()
-                     for name, values in quantities.items() if not isinstance(values, tuple)]
+                     for name, values in quantities.items()]
         if found["relations"]:
             data = relations(found["relations"])
             files += [folder / "relations.json", folder / "relations.png"]
