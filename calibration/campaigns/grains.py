@@ -15,7 +15,7 @@ import matplotlib
 from calibration import generated
 from calibration.campaigns import grains_figures as figures
 from calibration.campaigns import grains_tables as tables
-from calibration.campaigns.runs import RunFailed, Runs
+from calibration.campaigns.runs import Runs, wait_for
 from calibration.campaigns.uniaxial_tables import write_csv
 from rockwear.model import rock_file
 from rockwear.report import plots
@@ -138,6 +138,11 @@ def write(folder):
     return generated.write_page(folder / "grains.md", tables.page(rows, measured, points))
 
 
+def _line(key, run):
+    name, x, test, seed = key
+    return f"{name or 'calibrated'} {x:.4g}, {test}, packing {seed}: {1e-6 * run.result('peak_stress'):.2f} MPa"
+
+
 def main(folder, words):
     """-> exit code: 1 where a run failed."""
     failed = 0
@@ -147,14 +152,7 @@ def main(folder, words):
             jobs = {key: runs.start(place, script, **values)
                     for campaign in [word for word in CAMPAIGNS if word in words] or CAMPAIGNS
                     for key, (place, script, values) in planned(campaign).items()}
-            for (name, x, test, seed), job in jobs.items():
-                try:
-                    strength = job.result().result("peak_stress")
-                    print(f"{name or 'calibrated'} {x:.4g}, {test}, packing {seed}: {1e-6 * strength:.2f} MPa",
-                          flush=True)
-                except RunFailed as error:
-                    print(error, file=sys.stderr, flush=True)
-                    failed = 1
+            failed = wait_for(jobs, _line)
     print(write(folder))
     return failed
 

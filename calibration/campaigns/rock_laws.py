@@ -16,7 +16,7 @@ import matplotlib
 import numpy as np
 
 from calibration import generated
-from calibration.campaigns.runs import RunFailed, Runs
+from calibration.campaigns.runs import Runs, wait_for
 from rockwear.report import palette, plots
 from rockwear.report.folder import RunFolder
 
@@ -252,14 +252,9 @@ def main(folder, words):
     failed = 0
     if "--read" not in words:
         with Runs(folder, keep=True) as runs:
-            for campaign in words or list(CASES):
-                for (case, test, seed), job in start(runs, campaign).items():
-                    try:
-                        job.result()
-                        print(f"{campaign}: {case}, {test}, packing {seed}", flush=True)
-                    except RunFailed as error:
-                        print(error, file=sys.stderr, flush=True)
-                        failed = 1
+            jobs = {(campaign, *key): job for campaign in words or list(CASES)
+                    for key, job in start(runs, campaign).items()}
+            failed = wait_for(jobs, lambda key, run: "{}: {}, {}, packing {}".format(*key))
     print(write(folder))
     return failed
 

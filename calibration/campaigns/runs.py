@@ -1,6 +1,7 @@
 """Scenes run in processes of their own, so many at a time, each into its folder."""
 import os
 import subprocess
+import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -57,6 +58,19 @@ class Runs:
             words.append("--resume")
         run_script(script, folder, words)
         return RunFolder(folder)
+
+
+def wait_for(jobs, words):
+    """Wait for runs {key: Future of its RunFolder}; print words(key, folder) of each, or why it failed. -> 1 where one
+    failed, else 0."""
+    failed = 0
+    for key, job in jobs.items():
+        try:
+            print(words(key, job.result()), flush=True)
+        except RunFailed as error:
+            print(error, file=sys.stderr, flush=True)
+            failed = 1
+    return failed
 
 
 def finished(folder, values):

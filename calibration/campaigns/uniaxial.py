@@ -16,7 +16,7 @@ import matplotlib
 from calibration import generated
 from calibration.campaigns import uniaxial_figures as figures
 from calibration.campaigns import uniaxial_tables as tables
-from calibration.campaigns.runs import RunFailed, Runs
+from calibration.campaigns.runs import Runs, wait_for
 from calibration.campaigns.uniaxial_tables import TESTS
 from rockwear.report import plots
 from rockwear.report.folder import RunFolder
@@ -222,13 +222,8 @@ def main(folder, words):
     if "--read" not in words:
         with Runs(folder, keep=True) as runs:
             jobs = {(campaign, *key): job for campaign in campaigns for key, job in start(runs, campaign).items()}
-            for (campaign, case, test, seed), job in jobs.items():
-                try:
-                    strength = job.result().result("peak_stress")
-                    print(f"{campaign}: {case}, {test}, packing {seed}: {1e-6 * strength:.1f} MPa", flush=True)
-                except RunFailed as error:
-                    print(error, file=sys.stderr, flush=True)
-                    failed = 1
+            failed = wait_for(jobs, lambda key, run: "{}: {}, {}, packing {}: {:.1f} MPa".format(
+                *key, 1e-6 * run.result("peak_stress")))
     print(write(folder))
     return failed
 

@@ -121,7 +121,7 @@ class TriaxialTest(SpecimenTest):
         self._lead()
 
     def _lead(self):
-        """The platens work only where they are led."""
+        """The platens work only where their motion is prescribed."""
         self.platens.velocity = self.sign * self.v.speed if self.axial else 0.0
 
     def end_stage(self, folder):

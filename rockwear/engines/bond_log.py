@@ -1,4 +1,5 @@
 """What both carriers of bonds share: the laws, the status of each bond, the crack log, the energy dissipated."""
+from abc import abstractmethod
 from collections import namedtuple
 
 import numpy as np
@@ -29,6 +30,25 @@ class BondLog(Engine):
         self.law, self.laws = law, [law] * len(self.pairs) if laws is None else laws
         self.status = np.full(len(self.pairs), INTACT, np.int8)
         self.cracks, self.broken, self.energy_released, self.clock = [], {}, 0.0, clock
+
+    @abstractmethod
+    def _shift(self, n, shift):
+        """Raise the reference overlap of bond n by `shift` (m). -> its geom and phys."""
+
+    def expand(self, numbers, growth, overlap):
+        """Radii have grown: r_i + r_j of bonds `numbers` by `growth`, their reference overlap by `overlap` (m).
+
+        -> J, the work of the expansion against the forces of the last step.
+        """
+        work = 0.0
+        for n, longer, shift in zip(numbers.tolist(), growth.tolist(), overlap.tolist()):
+            if self.status[n] == SEPARATED:
+                continue
+            geom, phys = self._shift(n, shift)
+            pressing = phys.normalForce.dot(geom.normal)
+            if pressing or self.status[n] == INTACT:
+                work += (longer - shift) * (pressing + 0.5 * phys.kn * (longer - shift))
+        return work
 
     def in_contact(self):
         """(m,) bool: bonds that are intact, or broken and under compression; these conduct heat."""

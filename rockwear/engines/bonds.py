@@ -236,26 +236,15 @@ class Bonds(BondLog):
         self.broken = dict(sorted(self.broken.items()))
         self.softening_bonds = dict(sorted(self.softening_bonds.items()))
 
-    def expand(self, numbers, growth, overlap):
-        """Radii have grown: r_i + r_j of bonds `numbers` by `growth`, their reference overlap by `overlap` (m).
-
-        -> J, the work of the expansion against the forces of the last step.
-        """
-        work = 0.0
-        for n, longer, shift in zip(numbers.tolist(), growth.tolist(), overlap.tolist()):
-            if self.status[n] == SEPARATED:
-                continue
-            if n in self.softening_bonds:
-                softening = self.softening_bonds[n]
-                softening.overlap += shift
-                interaction, phys = softening.interaction, softening.phys
-            else:
-                interaction, phys = self.elastic[n] if self.status[n] == INTACT else self.broken[n]
-            phys.initD += shift
-            pressing = phys.normalForce.dot(interaction.geom.normal)
-            if pressing or self.status[n] == INTACT:
-                work += (longer - shift) * (pressing + 0.5 * phys.kn * (longer - shift))
-        return work
+    def _shift(self, n, shift):
+        if n in self.softening_bonds:
+            softening = self.softening_bonds[n]
+            softening.overlap += shift
+            interaction, phys = softening.interaction, softening.phys
+        else:
+            interaction, phys = self.elastic[n] if self.status[n] == INTACT else self.broken[n]
+        phys.initD += shift
+        return interaction.geom, phys
 
     def contact(self, n):
         """YADE's phys of the intact bond n."""

@@ -1,4 +1,4 @@
-"""Constant pressure on the sides of a specimen, and on its ends before they are led."""
+"""Constant pressure on the sides of a specimen, and on its ends before their motion is prescribed."""
 import math
 
 import numpy as np

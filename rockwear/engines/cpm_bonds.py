@@ -170,20 +170,10 @@ class CpmBonds(BondLog):
                 phys.setDamage(omega)
             self.active[n] = contact, omega, self._shear(geom, phys)
 
-    def expand(self, numbers, growth, overlap):
-        """Radii have grown: r_i + r_j of bonds `numbers` by `growth`, their reference overlap by `overlap` (m).
-
-        -> J, the work of the expansion against the forces of the last step.
-        """
-        work = 0.0
-        for n, longer, shift in zip(numbers.tolist(), growth.tolist(), overlap.tolist()):
-            if self.status[n] == SEPARATED:
-                continue
-            _, geom, phys, _ = self.active[n][0] if n in self.active else self.quiet[n]
-            phys.refPD += shift
-            pressing = phys.normalForce.dot(geom.normal)
-            work += (longer - shift) * (pressing + 0.5 * phys.kn * (longer - shift))
-        return work
+    def _shift(self, n, shift):
+        _, geom, phys, _ = self.active[n][0] if n in self.active else self.quiet[n]
+        phys.refPD += shift
+        return geom, phys
 
     def _intact(self):
         """{number: (interaction, geom, phys, its epsTPl)} of all bonds."""
