@@ -70,10 +70,16 @@ def contact_energy(interactions, overlap=overlap_of_spheres):
     return energy
 
 
-def rock_positions(rock):
-    """(n, d) m of the specimen's particles in YADE now, by its one bulk read."""
+def rock_states(rock):
+    """(n, 13) place (m), velocity (m/s), angular velocity (rad/s) and orientation of the specimen's particles in YADE
+    now, by its one bulk read."""
     values = np.fromiter(Subdomain().getStateValuesFromIds(list(range(rock.count))), float)
-    return values.reshape(rock.count, 13)[:, :rock.positions.shape[1]]
+    return values.reshape(rock.count, 13)
+
+
+def rock_positions(rock):
+    """(n, d) m of the specimen's particles in YADE now."""
+    return rock_states(rock)[:, :rock.positions.shape[1]]
 
 
 def damped_energy():

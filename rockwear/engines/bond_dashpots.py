@@ -1,7 +1,8 @@
 """Dashpots of bonds and of contacts between once bonded particles, in the plane."""
 import numpy as np
-from yade import O, Subdomain, Vector3
+from yade import O, Vector3
 
+from rockwear.engines.access import rock_states
 from rockwear.engines.base import FORCES, Engine
 from rockwear.engines.bond_log import INTACT
 
@@ -38,7 +39,7 @@ class BondDashpots(Engine):
 
     def act(self):
         rock, i, j = self.rock, self.first, self.second
-        states = np.reshape(np.fromiter(Subdomain().getStateValuesFromIds(list(range(rock.count))), float), (-1, 13))
+        states = rock_states(rock)
         places, motion = states[:, :2], states[:, [3, 4, 8]]
         self._count(motion)
         line = places[j] - places[i]

@@ -55,7 +55,7 @@ class Cohesive(LinearBondLaw):
         return 0.5 * self.Rn * self.gone, math.inf
 
     def dissipated(self, softening):
-        """Energy (J) that damage has dissipated at this omega: half of Rn times the displacement that has closed."""
+        """Energy (J) that damage has dissipated at this omega."""
         u0, uf = self.onset, self.gone
         u = u0 / (1.0 - softening * (1.0 - u0 / uf))
         # Under the curve up to u, less what unloading along the secant gives back.
