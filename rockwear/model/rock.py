@@ -22,6 +22,8 @@ UNBREAKABLE = 1e30
 """Strength (N) of the bonds within a grain."""
 SCATTER_LIMITS = 0.05, 5.0
 """Least and largest strength over the mean one where strengths scatter."""
+BORDER, INSIDE = 4.0, 10
+"""Mean radii from a border within which particles lack bonds, or neighbours of such; least number of others."""
 
 
 def graded_radius(*, top, fine_depth, grading_factor, over):
@@ -60,8 +62,6 @@ class RockAssembly:
 
     laws = grains = None
     """(m,) law of each bond; (n,) number of the grain of each particle, where the rock has grains."""
-    cut_length = 0.0
-    """m, of all bonds that cuts left out."""
 
     def __init__(self, *, positions, radii, width, height, density, pairs, scale=None, depth=None, porosity=None):
         self.positions, self.radii, self.density = np.asarray(positions, float), radii, density
@@ -106,18 +106,32 @@ class RockAssembly:
 
     @property
     def bond_areas(self):
-        """(m,) m2 of crack that a bond stands for, in the plane per metre of thickness.
+        """(m,) m2 of crack that a bond stands for, in the plane per metre of thickness: that of the bonds inside."""
+        return self.crack_area * self.strength_factor**(self.dimensions - 1)
+
+    @cached_property
+    def crack_area(self):
+        """m2 of crack, in the plane per metre of thickness, that a bond between particles of scale 1 stands for.
 
         A straight line meets (2/pi) sum d / A bonds per length, a plane sum d / (2 V) per area, d being the lengths of
         the bonds in an area A or a volume V in which their directions are evenly spread; in graded rock locally so.
+        Particles near a border or a notch lack bonds: the sums are over the cells of those farther than BORDER from
+        it, each with half of its bonds, and over all only where fewer than INSIDE are so far.
         """
         i, j = self.pairs.T
         lengths = np.linalg.norm(self.positions[i] - self.positions[j], axis=1)
-        power = self.positions.shape[1] - 1
-        # By mass, which stays where radii are reduced.
-        shares = self.masses / self.density / self.scale**power
-        mean = (0.5 * math.pi if power == 1 else 2.0) * float(shares.sum() / (lengths.sum() + self.cut_length))
-        return mean * self.strength_factor**power
+        halves = 0.5 * np.bincount(np.concatenate([i, j]), np.tile(lengths, 2), self.count)
+        depth = np.min(0.5 * np.array(self.size) - abs(self.positions - self.centre), axis=1)
+        inside = (self.side == 0) & (depth > BORDER * self.scale * np.mean(self.radii / self.scale))
+        if np.count_nonzero(inside) < INSIDE:
+            inside, shares = np.ones(self.count, bool), self.masses / self.density
+        else:
+            # Cells inside do not feel the walls; particles of a lattice may lie in those of the box.
+            low = self.positions.min(axis=0) - self.radii.max()
+            shares = cells(self.positions - low, box=np.ptp(self.positions, axis=0) + 2 * self.radii.max()).volumes
+        power = self.dimensions - 1
+        return (0.5 * math.pi if power == 1 else 2.0) * float(
+            np.sum((shares / self.scale**power)[inside]) / halves[inside].sum())
 
     def bond(self, law, *, grain_edge=0.0, within_grains=None, weibull_modulus=0.0, seed=0):
         """Give every bond its law, `laws` (m,), as the rock's law asks for at its place.
@@ -182,8 +196,6 @@ class RockAssembly:
         crossed = (part >= 0) & (part <= 1) & (at >= 0) & (at <= length)
         beside = (x > 0) & (x < length) & (abs(y) <= 2 * self.radii.max())
         beside[self.pairs[crossed]] = True
-        i, j = self.positions[self.pairs[crossed].T]
-        self.cut_length += float(np.linalg.norm(i - j, axis=1).sum())
         self.pairs = self.pairs[~crossed]
         self.side[beside] = np.where(y[beside] > 0, 1, 2)
 
@@ -274,6 +286,11 @@ class CutOut(RockAssembly):
         super().__init__(positions=positions, radii=radii, width=specimen.width, height=specimen.height,
                          density=specimen.density, pairs=pairs, porosity=specimen.porosity,
                          scale=specimen.scale[kept])
+
+    @property
+    def crack_area(self):
+        """m2 of crack of a bond: as in the specimen."""
+        return self.specimen.crack_area
 
     @cached_property
     def cells(self):

