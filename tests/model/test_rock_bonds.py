@@ -69,7 +69,8 @@ def test_lines_through_a_packing_cross_as_many_bonds():
 
 
 def test_planes_through_a_block_cross_as_many_bonds():
-    block = Block(width=0.15, height=0.15, depth=0.15, radius=8e-3, porosity=0.4, seed=1, bonding_gap=8e-4, density=2500)
+    block = Block(width=0.15, height=0.15, depth=0.15, radius=8e-3, porosity=0.4, seed=1, bonding_gap=8e-4,
+                  density=2500)
     found = crossings(block.positions, block.pairs, ((0.075, 0.075, 0.0), 0.045), 1000)
     assert found * block.bond_areas.mean() == pytest.approx(1, rel=0.03)
 
