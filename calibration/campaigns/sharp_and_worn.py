@@ -22,6 +22,7 @@ from calibration.campaigns.uniaxial_tables import write_csv
 from rockwear.kernels import cutting_theory
 from rockwear.kernels.bond_laws import BOND_LAWS
 from rockwear.kernels.checks import ParameterError, require
+from rockwear.kernels.fragments import pieces
 from rockwear.report import page, plots, shapes
 from rockwear.report.bodies import tool_loops
 from rockwear.report.folder import RunFolder
@@ -68,7 +69,7 @@ def chip_size(run):
     """Equivalent diameter (m) of a chip's area, the median by mass over all chips of more than one disc."""
     shot, model = run.snapshot(-1), run.model
     loose = shapes.chips(len(model["rock_radii"]), model["bonds"], shot["status"] == 0, model["rock_fixed"])
-    number = shapes.pieces(len(model["rock_radii"]), model["bonds"], shot["status"] == 0)
+    number = pieces(len(model["rock_radii"]), model["bonds"], shot["status"] == 0)
     count = np.bincount(number[loose], minlength=number.max() + 1)
     area = np.bincount(number[loose], math.pi * model["rock_radii"][loose]**2, number.max() + 1)
     area = np.sort(area[count > 1])

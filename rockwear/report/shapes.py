@@ -1,9 +1,8 @@
 """Shapes in a run's arrays: the outline of what is left of the tool, its wear along the contour, chips, cracks."""
 import numpy as np
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 from scipy.spatial import Delaunay, QhullError, cKDTree
 
+from rockwear.kernels.fragments import pieces
 from rockwear.kernels.polygon import contour
 
 ALPHA = 2.2
@@ -101,12 +100,6 @@ def distance_to(points, polygons, spacing):
     if not polygons:
         return np.full(len(points), np.nan)
     return cKDTree(np.vstack([contour(polygon, spacing)[0] for polygon in polygons])).query(points)[0]
-
-
-def pieces(count, pairs, intact):
-    """(n,) number of the piece that each disc belongs to by intact bonds."""
-    i, j = pairs[intact].T
-    return connected_components(coo_matrix((np.ones(len(i)), (i, j)), shape=(count, count)), directed=False)[1]
 
 
 def chips(count, pairs, intact, fixed):
