@@ -78,7 +78,7 @@ def critical_time_step(*, positions, radii, masses, inertias, bonds, kn, kt, fix
         alpha = (r[i] + r[j]) / distance
         kt = alpha * kt
         arms = [np.sqrt(np.maximum(arm, 0.0) * radius / alpha) for arm, radius in zip(arms, (r[i], r[j]))]
-    springs, dashpots = _rows(n, i, j, normal, *arms, kn, kt), _dashpot_rows(n, i, j, normal, *arms, cn, ct)
+    springs, dashpots = contact_rows(n, i, j, normal, *arms, kn, kt), _dashpot_rows(n, i, j, normal, *arms, cn, ct)
     if ground is not None:
         grounded = _ground_rows(ground, r, d)
         springs, dashpots = sparse.vstack([springs, grounded[0]]), sparse.vstack([dashpots, grounded[1]])
@@ -113,7 +113,7 @@ def _damped_step(springs, dashpots):
     return step / (1 + TOLERANCE)
 
 
-def _rows(n, i, j, normal, arm_i, arm_j, kn, kt):
+def contact_rows(n, i, j, normal, arm_i, arm_j, kn, kt):
     """Sparse matrix that maps (u, φ) of all n particles to stretch times √kn and shear times √kt of each contact."""
     m, d = normal.shape
     if d == 2:
@@ -140,7 +140,7 @@ def _rows(n, i, j, normal, arm_i, arm_j, kn, kt):
 def _dashpot_rows(n, i, j, normal, arm_i, arm_j, cn, ct):
     """The same for the relative velocity times √cn and √ct, of the contacts that have a dashpot."""
     damped = np.flatnonzero(cn + ct)
-    return _rows(n, *(each[damped] for each in (i, j, normal, arm_i, arm_j, cn, ct)))
+    return contact_rows(n, *(each[damped] for each in (i, j, normal, arm_i, arm_j, cn, ct)))
 
 
 def _ground_rows(ground, r, d):
@@ -152,7 +152,7 @@ def _ground_rows(ground, r, d):
     require((length > 0).all(), "ground", f"normals of shape {normals.shape}", f"one vector of {d} components a node")
     kn, kt, cn = (_each_bond("ground", value, len(nodes)) for value in (kn, kt, cn))
     body, normals = np.full(len(nodes), n), normals / length[:, None]
-    rows = (_rows(n + 1, nodes, body, normals, r[nodes], np.zeros(len(nodes)), kn, kt),
+    rows = (contact_rows(n + 1, nodes, body, normals, r[nodes], np.zeros(len(nodes)), kn, kt),
             _dashpot_rows(n + 1, nodes, body, normals, r[nodes], np.zeros(len(nodes)), cn, np.zeros(len(nodes))))
     return [each[:, : each.shape[1] // (n + 1) * n] for each in rows]
 

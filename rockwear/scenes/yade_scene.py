@@ -4,11 +4,11 @@ import math
 from yade import (
     Bo1_Facet_Aabb, Bo1_Sphere_Aabb, CpmMat, ForceResetter, FrictMat, FrictViscoMat, Ig2_Facet_Sphere_ScGeom,
     Ig2_Sphere_Sphere_ScGeom, InsertionSortCollider, InteractionLoop, Ip2_CpmMat_CpmMat_CpmPhys,
-    Ip2_FrictMat_FrictMat_FrictPhys,
-    Ip2_FrictMat_FrictViscoMat_FrictViscoPhys, Ip2_FrictViscoMat_FrictViscoMat_FrictViscoPhys,
-    Ip2_JCFpmMat_JCFpmMat_JCFpmPhys, JCFpmMat, Law2_ScGeom_CpmPhys_Cpm, Law2_ScGeom_FrictPhys_CundallStrack,
-    Law2_ScGeom_FrictViscoPhys_CundallStrackVisco, Law2_ScGeom_JCFpmPhys_JointedCohesiveFrictionalPM, MatchMaker,
-    NewtonIntegrator, O, log, utils)
+    Ip2_FrictMat_FrictMat_FrictPhys, Ip2_FrictMat_FrictViscoMat_FrictViscoPhys,
+    Ip2_FrictViscoMat_FrictViscoMat_FrictViscoPhys, Ip2_JCFpmMat_JCFpmMat_JCFpmPhys,
+    Ip2_ViscElMat_ViscElMat_ViscElPhys, JCFpmMat, Law2_ScGeom_CpmPhys_Cpm, Law2_ScGeom_FrictPhys_CundallStrack,
+    Law2_ScGeom_FrictViscoPhys_CundallStrackVisco, Law2_ScGeom_JCFpmPhys_JointedCohesiveFrictionalPM,
+    Law2_ScGeom_ViscElPhys_Basic, MatchMaker, NewtonIntegrator, O, log, utils)
 
 from rockwear.engines.bonds import Bonds
 from rockwear.engines.cpm_bonds import CpmBonds
@@ -107,11 +107,13 @@ def put_loop_with_facets(*, rock, tool, damping=0.0, ratcheting_free=True):
 
 
 def bond_loop(geometry, parameters=(), laws=()):
-    """InteractionLoop for bonds of either YADE law, beside other contacts."""
+    """InteractionLoop for bonds of either YADE law and for supports of a boundary, beside other contacts."""
     return InteractionLoop(
         geometry, [Ip2_JCFpmMat_JCFpmMat_JCFpmPhys(cohesiveTresholdIteration=1),
-                   Ip2_CpmMat_CpmMat_CpmPhys(cohesiveThresholdIter=2), *parameters],
-        [Law2_ScGeom_JCFpmPhys_JointedCohesiveFrictionalPM(neverErase=True), Law2_ScGeom_CpmPhys_Cpm(), *laws])
+                   Ip2_CpmMat_CpmMat_CpmPhys(cohesiveThresholdIter=2), Ip2_ViscElMat_ViscElMat_ViscElPhys(),
+                   *parameters],
+        [Law2_ScGeom_JCFpmPhys_JointedCohesiveFrictionalPM(neverErase=True), Law2_ScGeom_CpmPhys_Cpm(),
+         Law2_ScGeom_ViscElPhys_Basic(), *laws])
 
 
 def _put_engines(bounds, geometry, parameters, laws, damping):

@@ -119,7 +119,7 @@ def test_rigid_motions_cost_nothing(dimensions):
     distance = np.linalg.norm(x[j] - x[i], axis=1)
     half = 0.5 * (r[i] + r[j] - distance)
     ones = np.ones(len(i))
-    rows = stability._rows(len(x), i, j, (x[j] - x[i]) / distance[:, None], r[i] - half, r[j] - half, ones, ones)
+    rows = stability.contact_rows(len(x), i, j, (x[j] - x[i]) / distance[:, None], r[i] - half, r[j] - half, ones, ones)
     spins = [np.array([0, 0, 1.0])] if dimensions == 2 else np.eye(3)
     for w in spins:
         x3 = np.pad(x, ((0, 0), (0, 3 - dimensions)))
@@ -275,8 +275,8 @@ def test_free_of_ratcheting(dimensions):
     distance = np.linalg.norm(x[j] - x[i], axis=1)
     alpha, half, ones = (r[i] + r[j]) / distance, 0.5 * (r[i] + r[j] - distance), np.ones(len(i))
     normal = (x[j] - x[i]) / distance[:, None]
-    seen = stability._rows(len(x), i, j, normal, r[i] / alpha, r[j] / alpha, kn * ones, kt * alpha)
-    pushed = stability._rows(len(x), i, j, normal, r[i] - half, r[j] - half, kn * ones, kt * alpha)
+    seen = stability.contact_rows(len(x), i, j, normal, r[i] / alpha, r[j] / alpha, kn * ones, kt * alpha)
+    pushed = stability.contact_rows(len(x), i, j, normal, r[i] - half, r[j] - half, kn * ones, kt * alpha)
     stiffness = (pushed.T @ seen).toarray() / lumped(s["masses"], s["inertias"], dimensions)[:, None]
     exact = 2 / math.sqrt(np.linalg.eigvals(stiffness).real.max())
     found = critical_time_step(**s, kn=kn, kt=kt, ratcheting_free=True)

@@ -19,6 +19,7 @@ from yade import FrictViscoMat, NewtonIntegrator, O, Subdomain
 
 import rockwear.engines
 from rockwear.engines import access, base
+from rockwear.engines.absorbing_boundary import AbsorbingBoundary
 from rockwear.engines.bond_dashpots import BondDashpots
 from rockwear.engines.base import Engine
 from rockwear.engines.conduction import Conduction
@@ -45,6 +46,7 @@ from rockwear.kernels.archard import Hardness
 from rockwear.kernels.bond_laws import (
     Cohesive, ElasticBrittle, ElasticDamage, ElastoPlasticSoftening, NonlinearElastoPlastic)
 from rockwear.kernels.conduction import HeatNetwork
+from rockwear.kernels.elastic_moduli import Moduli
 from rockwear.kernels.erosion import Erosion
 from rockwear.kernels.packing import contacts
 from rockwear.kernels.rigid_motion import Straight, SwingAndRotation
@@ -335,6 +337,37 @@ class Confined(Tension):
             O.bodies[body].state.blockedDOFs = "xzXY"
 
 
+class Absorbing(World):
+    """A block falls on a boundary that absorbs, which holds other particles as time goes on."""
+
+    time_step = 1e-7
+    law = ElasticBrittle(**{**STRENGTH, "Rn": 1e9, "Rt": 1e9})
+
+    def __init__(self):
+        super().__init__()
+        self.rock = discs(lattice(8, 5))
+
+    def _engines(self):
+        self.boundary = AbsorbingBoundary(moduli=Moduli(2e10, 0.2, 2e10 / 2.4), density=2500.0, period=3)
+        return [self.bonds, self.boundary, self.rock_friction]
+
+    def _hold(self, numbers, normal, forces=None):
+        count = len(numbers)
+        self.boundary.hold(numbers, [normal] * count, np.full(count, 2 * RADIUS), np.full(count, 8e-3), forces)
+
+    def _begin(self):
+        for i in range(self.rock.count):
+            O.bodies[i].state.vel = (1.0, -5.0, 0)
+        self._hold(range(8), (0, -1))
+
+    def event(self, last):
+        if last:
+            self._hold([0, 8, 16], (-1, 0), [(1e3, 0.0)] * 3)
+        else:
+            self._hold([7, 15, 23], (1, 0))
+            self.boundary.let_go([1, 3, 5])
+
+
 class NowhereLinear(Tension):
     """The same with a law whose bonds all have their force from Python."""
 
@@ -407,7 +440,7 @@ class HeatAlone(World):
         """Nothing of YADE's to prepare."""
 
 
-WORLDS = (ParticleCut, FacetCut, Sliding, Tension, Confined, NowhereLinear, Softening, Spinning, HeatAlone)
+WORLDS = (ParticleCut, FacetCut, Sliding, Tension, Confined, Absorbing, NowhereLinear, Softening, Spinning, HeatAlone)
 
 
 def concrete_engines():

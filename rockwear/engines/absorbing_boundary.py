@@ -1,0 +1,194 @@
+"""A boundary that absorbs: springs and dashpots between rock particles and bodies at rest, as native contacts."""
+import numpy as np
+from yade import O, Subdomain, Vector3, ViscElMat, utils
+
+from rockwear.engines.base import Engine
+from rockwear.kernels.checks import require
+from rockwear.kernels.viscous_spring import viscous_spring
+
+SUPPORT_RADIUS = 1e4
+"""Radius of a support over that of its particle: their line keeps its direction, and its spring its linearity."""
+MATERIAL = "absorbing boundary"
+NO_SLIP = 1e9
+"""Coefficient of friction of a support."""
+COLUMNS = ("numbers", "supports", "places", "normals", "forces", "kn", "kt", "cn", "ct")
+"""What is kept of each held particle."""
+
+
+class AbsorbingBoundary(Engine):
+    """Holds rock particles in the plane by springs and dashpots of kernels.viscous_spring.
+
+    moduli: kernels.elastic_moduli.Moduli of the rock; density: kg/m3 of its bulk; period: steps between samples of the
+    energy. `hold` and `let_go` may be called between any two steps once the rock is bonded; a held particle must be
+    free to move.
+
+    A support is a sphere at rest that nothing else meets. It reaches to the far side of its particle, so that they
+    touch at the particle's centre: the contact neither turns it nor feels it turn. The force of that overlap, and what
+    else is constant, is a permanent force on the particle. YADE's law has no tension, but does not need it before the
+    particle has moved by its diameter. Idle supports wait for the next particle.
+
+    `absorbed` (J) is the work of the dashpots, by the trapezoidal rule over samples; `released` (J) what the springs
+    held that were let go. `elastic_energy` is what they hold now.
+    """
+
+    name = "absorbing_boundary"
+
+    def __init__(self, *, moduli, density, period=10):
+        super().__init__(period=period)
+        self.moduli, self.density = moduli, density
+        self.numbers, self.supports, self.idle = (np.empty(0, int) for _ in range(3))
+        self.places, self.normals, self.forces = (np.empty((0, 2)) for _ in range(3))
+        self.kn, self.kt, self.cn, self.ct = (np.empty(0) for _ in range(4))
+        self.absorbed = self.released = self.power = 0.0
+
+    def connect(self):
+        # YADE does not save permanent forces.
+        self._set_forces(range(len(self.numbers)))
+
+    def hold(self, numbers, normals, areas, distances, forces=None):
+        """Hold these particles (k,) where they are now.
+
+        normals (k, 2): outwards; areas (k,) m2 of the boundary that each stands for; distances (k,) m from the load;
+        forces (k, 2) N: what the rock that is no longer there exerted on each, 0 by default. A particle may come twice,
+        for two faces at right angles. If it is held already, what its springs exerted becomes a constant force. Raises
+        ParameterError.
+        """
+        numbers, given = np.asarray(numbers, int), np.asarray(normals, float)
+        require(given.shape == (len(numbers), 2), "normals", f"array of shape {given.shape}", "of shape (k, 2)")
+        self.act()
+        held, first, which = np.unique(numbers, return_index=True, return_inverse=True)
+        normals = given[first] / np.linalg.norm(given[first], axis=1)[:, None]
+        constants = viscous_spring(moduli=self.moduli, density=self.density, areas=areas, distances=distances)
+        # On a face at right angles to the first one, normal and tangent change places.
+        along = np.abs(np.sum(given * normals[which], axis=1)) > np.sqrt(0.5) * np.linalg.norm(given, axis=1)
+        total = [np.bincount(which, np.where(along, one, other), len(held)) for one, other in (
+            constants[0:2], constants[1::-1], constants[2:4], constants[3:1:-1])]
+        exerted = np.zeros((len(held), 2))
+        if forces is not None:
+            np.add.at(exerted, which, forces)
+        exerted += self._let_go(held)
+        start = len(self.numbers)
+        states = self._states(held)
+        new = (held, self._supports(len(held)), states[:, :2], normals, exerted, *total)
+        for column, values in zip(COLUMNS, new):
+            setattr(self, column, np.concatenate([getattr(self, column), values]))
+        added = range(start, len(self.numbers))
+        for k in added:
+            self._connect_support(k)
+        self._set_forces(added)
+        self.power = self._power()
+
+    def let_go(self, numbers):
+        """Let these particles (k,) go. Those that are not held stay as they are."""
+        self.act()
+        self._let_go(np.asarray(numbers, int))
+        self.power = self._power()
+
+    def _let_go(self, numbers):
+        """-> (k, 2) N that the boundary exerted on each, without the dashpots."""
+        exerted = np.zeros((len(numbers), 2))
+        gone = np.flatnonzero(np.isin(self.numbers, numbers))
+        if not len(gone):
+            return exerted
+        now = {int(number): force for number, force in zip(self.numbers[gone], self._exerted()[gone])}
+        for k, number in enumerate(numbers.tolist()):
+            exerted[k] = now.get(number, 0.0)
+        self.released += float(self._energies()[gone].sum())
+        for k in gone.tolist():
+            O.interactions.erase(int(self.numbers[k]), int(self.supports[k]))
+            O.forces.setPermF(int(self.numbers[k]), Vector3.Zero)
+        self.idle = np.concatenate([self.idle, self.supports[gone]])
+        for column in COLUMNS:
+            setattr(self, column, np.delete(getattr(self, column), gone, axis=0))
+        return exerted
+
+    def _supports(self, count):
+        """(count,) ids of idle supports, new ones where there are too few."""
+        if MATERIAL not in (material.label for material in O.materials):
+            O.materials.append(ViscElMat(kn=1.0, ks=1.0, cn=0.0, cs=0.0, label=MATERIAL))
+        while len(self.idle) < count:
+            body = utils.sphere((0, 0, 0), 1.0, material=MATERIAL, mask=0, fixed=True)
+            body.bounded = False
+            self.idle = np.append(self.idle, O.bodies.append(body))
+        taken, self.idle = self.idle[:count], self.idle[count:]
+        return taken
+
+    def _connect_support(self, k):
+        particle, support = O.bodies[int(self.numbers[k])], O.bodies[int(self.supports[k])]
+        radius = particle.shape.radius
+        support.shape.radius = SUPPORT_RADIUS * radius
+        support.state.pos = particle.state.pos + Vector3(*self.normals[k], 0) * ((SUPPORT_RADIUS - 1) * radius)
+        before, particle.mat = particle.mat, O.materials[MATERIAL]
+        phys = utils.createInteraction(particle.id, support.id).phys
+        particle.mat = before
+        phys.kn, phys.ks, phys.cn, phys.cs = (float(getattr(self, name)[k]) for name in ("kn", "kt", "cn", "ct"))
+        phys.tangensOfFrictionAngle = NO_SLIP
+
+    def _set_forces(self, held):
+        for k in held:
+            number = int(self.numbers[k])
+            overlap = 2 * O.bodies[number].shape.radius
+            O.forces.setPermF(number, Vector3(*(self.forces[k] + self.kn[k] * overlap * self.normals[k]), 0))
+
+    @staticmethod
+    def _states(numbers):
+        values = np.fromiter(Subdomain().getStateValuesFromIds(numbers.tolist()), float)
+        return values.reshape(len(numbers), 13)
+
+    def _split(self, vectors):
+        """(k,) components along the normals and across them."""
+        x, y = self.normals.T
+        return vectors[:, 0] * x + vectors[:, 1] * y, vectors[:, 1] * x - vectors[:, 0] * y
+
+    def _moved(self):
+        """(k, 2) m that the held particles have moved by."""
+        return self._states(self.numbers)[:, :2] - self.places
+
+    def _exerted(self):
+        """(k, 2) N of springs and constant forces on the held particles."""
+        along, across = self._split(self._moved())
+        x, y = self.normals.T
+        pull, shear = self.kn * along, self.kt * across
+        return self.forces - np.column_stack([pull * x - shear * y, pull * y + shear * x])
+
+    def _energies(self):
+        """(k,) J of springs and constant forces."""
+        moved = self._moved()
+        along, across = self._split(moved)
+        return 0.5 * (self.kn * along**2 + self.kt * across**2) - np.sum(self.forces * moved, axis=1)
+
+    def _power(self):
+        """W that the dashpots take now."""
+        if not len(self.numbers):
+            return 0.0
+        along, across = self._split(self._states(self.numbers)[:, 3:5])
+        return float(np.sum(self.cn * along**2 + self.ct * across**2))
+
+    def act(self):
+        """Add the work of the dashpots since the last visit."""
+        elapsed, before = self.elapsed(), self.power
+        self.power = self._power()
+        self.absorbed += 0.5 * (before + self.power) * elapsed
+
+    def elastic_energy(self):
+        """J of the springs, less the work of the constant forces."""
+        return float(self._energies().sum()) if len(self.numbers) else 0.0
+
+    def ground(self):
+        """(nodes, normals, kn, kt, cn) of kernels.stability.critical_time_step: each particle twice, by direction."""
+        across = np.column_stack([-self.normals[:, 1], self.normals[:, 0]])
+        both = [np.concatenate(pair) for pair in ((self.numbers, self.numbers), (self.normals, across),
+                                                  (self.kn, self.kt), (self.cn, self.ct))]
+        return both[0], both[1], both[2], np.zeros(len(both[0])), both[3]
+
+    def log(self):
+        return {"absorbed_energy": (self.absorbed, "J"), "boundary_power": (self.power, "W")}
+
+    def state(self):
+        return {**{name: getattr(self, name).copy() for name in (*COLUMNS, "idle")},
+                "absorbed": self.absorbed, "released": self.released, "power": self.power}
+
+    def restore(self, state):
+        for name in (*COLUMNS, "idle"):
+            setattr(self, name, state[name].copy())
+        self.absorbed, self.released, self.power = (float(state[name]) for name in ("absorbed", "released", "power"))

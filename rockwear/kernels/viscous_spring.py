@@ -1,0 +1,45 @@
+"""Springs and dashpots that stand for the rock beyond a boundary in the plane."""
+from collections import namedtuple
+
+import numpy as np
+
+from rockwear.kernels.checks import positive, require
+
+NORMAL_SPRING, TANGENTIAL_SPRING = 1.0, 0.5
+"""alpha_n, alpha_t of K = alpha G/r per area."""
+NORMAL_DASHPOT, TANGENTIAL_DASHPOT = 1.0, 1.0
+"""a, b of a rho c_P and b rho c_S per area."""
+
+Constants = namedtuple("Constants", "kn kt cn ct")
+"""Of each boundary particle: springs (N/m) and dashpots (N s/m) along the normal and across it."""
+
+
+def viscous_spring(*, moduli, density, areas, distances):
+    """Constants of particles that each stand for a part of a plane boundary.
+
+    Dashpots a rho c_P A and b rho c_S A take up plane waves at normal incidence [Lysmer and Kuhlemeyer 1969]; a and b
+    near 1 are the optimum over all angles [White, Valliappan and Lee 1977]. Springs alpha G A / r give the static
+    stiffness of the rock beyond, for a load at the distance r [Deeks and Randolph 1994; in the plane Liu, Du and Yan
+    2006].
+
+    moduli: kernels.elastic_moduli.Moduli; density: kg/m3 of the bulk; areas (k,) m2; distances (k,) m from the load.
+    Raises ParameterError for areas or distances that are not positive.
+    """
+    areas, distances = np.asarray(areas, float), np.asarray(distances, float)
+    positive("density", density, "kg/m3")
+    for name, values, unit in (("areas", areas, "m2"), ("distances", distances, "m")):
+        require((np.isfinite(values) & (values > 0)).all(), name, "array", "greater than 0", unit)
+    fast, slow = moduli.speeds(density)
+    spring = moduli.shear * areas / distances
+    return Constants(NORMAL_SPRING * spring, TANGENTIAL_SPRING * spring,
+                     NORMAL_DASHPOT * density * fast * areas, TANGENTIAL_DASHPOT * density * slow * areas)
+
+
+def shares(along, low, high):
+    """(k,) m of the boundary from `low` to `high` that each of the places `along` (k,) m is nearest to."""
+    along = np.asarray(along, float)
+    order = np.argsort(along)
+    edges = np.concatenate([[low], 0.5 * (along[order][1:] + along[order][:-1]), [high]])
+    found = np.empty(len(along))
+    found[order] = np.diff(np.clip(edges, low, high))
+    return found
