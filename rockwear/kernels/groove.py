@@ -57,7 +57,8 @@ def groove_results(*, x, height, chip):
     """{name: (value, unit)} of a groove; each but the largest with its `..._standard_error`.
 
     x (b,) m, the middles of equal bins, height (b,) m of the rock that is left above the tool's path (below: negative),
-    nan in empty bins, which are left out; chip: m, mean length of rock broken by a chip (peak spacing).
+    nan in empty bins, which are left out; chip: m, length of cut a chip (peak_spacing); nan where
+    it is not known: then there is no crater_depth.
     - overbreak (m): the depth below the path that is exceeded on EXCEEDED of the length. Rock beside the deepest places
       often lies at the path, so that a mean says little of the craters, and the largest depth grows with the length
       of the cut; this does neither;
@@ -65,12 +66,12 @@ def groove_results(*, x, height, chip):
       in stretches of one chip; largest_overbreak;
     - standing_rock: mean height above the path, 0 where it lies below.
     """
-    positive("chip", chip, "m")
+    chips_known = not math.isnan(chip) and positive("chip", chip, "m")
     x, height = np.asarray(x, float), np.asarray(height, float)
     there = np.isfinite(height)
     x, height = x[there], height[there]
     depth = np.maximum(-height, 0)
-    deepest = sample_mean(craters(x, depth, chip)) if len(x) else UNKNOWN
+    deepest = sample_mean(craters(x, depth, chip)) if len(x) and chips_known else UNKNOWN
     found = {"overbreak": exceeded(depth, EXCEEDED), "mean_overbreak": _mean(depth), "crater_depth": deepest,
              "standing_rock": _mean(np.maximum(height, 0))}
     return {**{key: entry for name, one in found.items() for key, entry in with_error(name, one, "m").items()},

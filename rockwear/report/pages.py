@@ -11,6 +11,7 @@ from rockwear.report.views.record import how_it_was_run, results
 from rockwear.report.views.set_up import set_up
 from rockwear.report.views.sliding import worn_block
 from rockwear.report.views.stages import stages
+from rockwear.report.views.steady import steady_cut
 from rockwear.report.views.trust import trust
 from rockwear.report.views.two_disc import two_disc, two_disc_results
 from rockwear.report.views.wear_particles import wear_particles
@@ -18,7 +19,7 @@ from rockwear.report.views.wear_segments import wear_segments
 from rockwear.report.views.wear_triangles import wear_triangles
 
 VIEWS = (
-    key_results, stages, turns.turn_by_turn, two_disc_results, two_disc,
+    key_results, steady_cut, stages, turns.turn_by_turn, two_disc_results, two_disc,
     heat_profiles.errors, heat_profiles.profiles, heat_profiles.convergence, heat_profiles.fields,
     stress_strain.stress_strain, load_displacement, stress_strain.failure, worn_block,
     speeds.speed_tables, speeds.tip_over_time, speeds.fields, speeds.near_the_tip,

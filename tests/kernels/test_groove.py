@@ -90,6 +90,12 @@ def test_a_short_groove_has_no_errors(count):
     assert found["overbreak"][0] == pytest.approx(1e-3 if count else math.nan, nan_ok=True)
 
 
+def test_without_chips_there_are_no_craters():
+    x, height = saw()
+    found = groove_results(x=x, height=height, chip=math.nan)
+    assert math.isnan(found["crater_depth"][0]) and found["mean_overbreak"][0] == pytest.approx(1e-3)
+
+
 def test_a_chip_without_length_is_refused():
     with pytest.raises(ParameterError, match="^chip = 0 m"):
         groove_results(x=[0.0], height=[0.0], chip=0.0)

@@ -111,6 +111,14 @@ def test_quantities(value, unit, shown):
     assert page.quantity(value, unit) == shown
 
 
+@pytest.mark.parametrize("value, error, unit, shown", [
+    (123.4e3, 5.67e3, "N/m", "123.4 ± 5.7 kN/m"), (216e3, 11.8e3, "N/m", "216 ± 12 kN/m"),
+    (2.4, 0.27, "-", "2.40 ± 0.27"), (0.0051, 0.00021, "m", "5.10 ± 0.21 mm"), (2e3, math.nan, "N/m", "2 kN/m"),
+    (2e3, 0.0, "N/m", "2 kN/m"), (math.nan, 1.0, "m", "not known")])
+def test_means_with_their_errors(value, error, unit, shown):
+    assert page.with_error(value, error, unit) == shown
+
+
 def test_section_of_a_drawn_out_polygon_is_the_polygon():
     polygon = np.array([[0, 0], [0.04, 0.01], [0.03, 0.05], [0, 0.03]])
     vertices, facets = prism(polygon, 0.02, 7e-3)

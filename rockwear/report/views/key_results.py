@@ -7,7 +7,7 @@ from rockwear.report import published
 from rockwear.report.bodies import has_particles, in_space, keeps_shape
 from rockwear.report.folder import work_entry
 from rockwear.report.instants import cutting, turns
-from rockwear.report.page import Section, duration, number, percent, quantity, tiles, words
+from rockwear.report.page import Section, duration, number, percent, quantity, tiles, with_error, words
 
 
 def key_results(run):
@@ -23,8 +23,9 @@ def tile(value, label, text, remark=""):
 
 
 def result(run, label, name, remark=""):
-    """The tile of a result in its own unit."""
-    return tile(run.result(name), label, quantity(run.result(name), run.unit(name)), remark)
+    """The tile of a result in its own unit, with its standard error if it has one."""
+    value, error, unit = run.result(name), run.result(f"{name}_standard_error"), run.unit(name)
+    return tile(value, label, with_error(value, error, unit), remark)
 
 
 # ---- the run in a line
@@ -72,8 +73,11 @@ def force_tiles(run):
     remark = "while it cuts" if len(at_work) and not at_work.all() else ""
     return [result(run, "mean cutting force", "mean_cutting_force", remark),
             result(run, "peak cutting force", "peak_cutting_force", remark),
+            result(run, "mean peak of a chip", "mean_peak_cutting_force"),
             result(run, "mean thrust force", "mean_thrust_force", remark),
-            result(run, "specific energy", "specific_energy"), crack_tile(run)]
+            result(run, "specific energy", "specific_energy"),
+            result(run, "overbreak", "overbreak", "below the path, exceeded on 10 % of the length"),
+            result(run, "chip length", "chip_length", "mean by area"), crack_tile(run)]
 
 
 def crack_tile(run):
