@@ -132,6 +132,17 @@ def test_chips_of_random_size_are_found():
     assert found.mean().standard_error == pytest.approx(heights.std() / math.sqrt(200), rel=0.2)
 
 
+def test_short_blows_are_read_wherever_they_lie():
+    """Saw teeth twice as long as RESOLUTION, at random places: the mean of their last half is 0.75 of the peak."""
+    ends = np.cumsum(DEPTH * (1 + np.random.default_rng(8).random(60)))
+    x = np.arange(0, ends[-1] + 0.1 * DEPTH, 2e-4 * DEPTH)
+    into = x - ends[np.maximum(np.searchsorted(ends, x, "right") - 1, 0)]
+    found = peaks(x, PEAK * np.where((into > 0) & (into < 0.04 * DEPTH), into / (0.04 * DEPTH), 0), depth=DEPTH)
+    assert len(found.force) == 60
+    np.testing.assert_allclose(found.force, 0.75 * PEAK, rtol=0.1)
+    assert np.mean(found.force) == pytest.approx(0.75 * PEAK, rel=0.05)
+
+
 def test_noise_and_small_drops_make_no_peaks():
     x, force = triangles()
     noisy = force + 0.1 * PEAK * np.random.default_rng(2).standard_normal(len(x))
