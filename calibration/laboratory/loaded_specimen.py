@@ -44,9 +44,6 @@ LOADING = (
 LOOK_IN_SPACE = 2
 """Steps between looks at softening bonds in space, where steps are long against the time in which a bond opens: with 10
 the energy balance misses 5 %, with 3 0.6 %, with 2 less."""
-ELASTIC_RANGE = 0.1, 0.4
-"""Stresses over the peak between which E and nu are taken."""
-
 
 IN_THE_PLANE = parameters.SPECIMEN.without("grading_factor", "fine_depth")
 IN_SPACE = parameters.BLOCK.without("scale_factor", "full", "gravity")
@@ -335,22 +332,3 @@ class SpecimenOutput(Output):
 
     def progress(self):
         return f"{self.scene.stress / 1e6:.3g} MPa, {len(self.scene.bonds.cracks)} cracks"
-
-
-def measured(*, stress, axial_strain, lateral_strain):
-    """{name: (value, unit)} of a stress-strain curve: its peak, and E and nu as slopes in ELASTIC_RANGE before it.
-
-    stress: (n,) Pa; strains: (n,), all positive in the direction of the loading. nan where fewer than three rows are
-    in the range.
-    """
-    peak = int(np.argmax(stress))
-    low, high = (part * stress[peak] for part in ELASTIC_RANGE)
-    # From the last row below the range to the first above it, so that a stray row counts for nothing.
-    above = int(np.argmax(stress >= high))
-    rows = np.flatnonzero((stress[:above] >= low) & (stress[:above] <= high))
-    modulus = ratio = math.nan
-    if len(rows) > 2:
-        modulus = np.polyfit(axial_strain[rows], stress[rows], 1)[0]
-        ratio = -np.polyfit(axial_strain[rows], lateral_strain[rows], 1)[0]
-    return {"peak_stress": (float(stress[peak]), "Pa"), "peak_strain": (float(axial_strain[peak]), "-"),
-            "youngs_modulus": (float(modulus), "Pa"), "poissons_ratio": (float(ratio), "-")}

@@ -8,10 +8,11 @@ import math
 import numpy as np
 from yade import utils
 
-from calibration.laboratory.loaded_specimen import SpecimenOutput, SpecimenTest, groups, measured
+from calibration.laboratory.loaded_specimen import SpecimenOutput, SpecimenTest, groups
 from rockwear.engines.confinement import Membrane, PressedEnds
 from rockwear.kernels.checks import require
 from rockwear.kernels.parameter import Parameter, integer, number
+from rockwear.kernels.stress_strain import measured
 
 GROUPS = groups(
     Parameter("confinement", 10e6, "Pa", number(0, 1e9), "pressure on the sides, and first on the ends too",

@@ -2,8 +2,9 @@
 
 The specimen is under uniaxial stress: its ends are the platens of `loaded_specimen`, its sides are free.
 """
-from calibration.laboratory.loaded_specimen import IN_SPACE, SpecimenOutput, SpecimenTest, groups, measured
+from calibration.laboratory.loaded_specimen import IN_SPACE, SpecimenOutput, SpecimenTest, groups
 from rockwear.kernels.parameter import Parameter, choice
+from rockwear.kernels.stress_strain import measured
 
 TEST = Parameter("test", "compression", "", choice("compression", "tension"), "direction of loading",
                  "[Rojek 2003, 5.1]")

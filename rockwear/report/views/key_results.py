@@ -128,7 +128,7 @@ def strength_tiles(run):
     modulus = run.result("youngs_modulus")
     return [result(run, "strength" if run.result("failed") else "peak stress, not failed", "peak_stress",
                    f"at a strain of {percent(run.result('peak_strain'), 1)}"),
-            tile(modulus, "Young's modulus", f"{number(modulus / 1e9)} GPa", "between 10 and 40 % of the peak"),
+            tile(modulus, "Young's modulus", f"{number(modulus / 1e9)} GPa", "between 10 and 25 % of the peak"),
             result(run, "Poisson's ratio", "poissons_ratio")]
 
 
