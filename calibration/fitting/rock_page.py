@@ -48,6 +48,9 @@ def answer(found, micro):
     bounds = micro.at_bounds(found.x)
     if bounds:
         lines.append(f"At the end of its range: {', '.join(bounds)}. The bond law {micro.law} cannot come nearer.")
+    if any(word.startswith("length") for word in bounds):
+        lines.append("The bonds are all but brittle: toughness then grows with the strength and the square root of the "
+                     "radius. A less tough rock takes smaller radii.")
     if found.not_failed:
         lines.append(f"Some specimens did not fail before the end of the test: {', '.join(found.not_failed)}. Their "
                      "strengths are lower bounds.")

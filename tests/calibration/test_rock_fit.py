@@ -1,5 +1,6 @@
 """The rock fit on a made-up laboratory: it finds what is there, says what is not, and refuses what cannot be."""
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -95,6 +96,15 @@ def test_a_strength_that_the_law_cannot_reach_is_said_and_the_others_are_met(tmp
     assert missed and missed <= {"ucs", "tensile_strength"}
     words = rock_page.answer(found, micro)[0]
     assert "of 4 targets are met" in words and "Not reached: " in words and "instead of" in words
+
+
+def test_a_rock_less_tough_than_its_discs_is_told_to_take_smaller_ones():
+    brittle = replace(TOUGH, fracture_toughness=0.3e6, points=())
+    micro, found, _ = fitted(brittle, "cohesive", scatter=0.005)
+    assert "fracture_toughness" in {o.name for o, one in found.verdicts.items() if not one.met}
+    assert "length = 0.00125" in (words := " ".join(rock_page.answer(found, micro))) and "smaller radii" in words
+    micro, found, _ = fitted(TOUGH, "cohesive")
+    assert "smaller radii" not in " ".join(rock_page.answer(found, micro))
 
 
 def test_what_it_leaves_is_a_rock_file_and_a_page_that_begins_with_the_answer(tmp_path):
