@@ -10,7 +10,7 @@ import numpy as np
 from calibration.campaigns.runs import RunFailed, Runs
 from calibration.fitting import rock_page
 from calibration.fitting.rock_unknowns import AIM, Micro
-from calibration.fitting.rock_targets import GROUPS, given_of, targets_of
+from calibration.fitting.rock_targets import GROUPS, STAGES, given_of, start_of, targets_of
 from calibration.fitting.rock_tests import Laboratory, Stage
 from calibration.fitting.surrogate import Problem, Surrogate, solve, uncertainty
 from rockwear.kernels.checks import ParameterError, require
@@ -62,8 +62,9 @@ class Verdict:
     met: bool
 
 
-def fit(*, micro, measure, say=print):
-    """Fit of the unknowns of `micro`. measure(x, Stage) -> {Observable: (packings,) values}: the laboratory."""
+def fit(*, micro, measure, first_stage=STAGES[0], say=print):
+    """Fit of the unknowns of `micro`. measure(x, Stage) -> {Observable: (packings,) values}: the laboratory;
+    first_stage: of STAGES."""
     found, began = Fit(micro.first, np.zeros(len(micro.first))), time.time()
     problem = Problem(target=np.array([float(o.scaled(o.target)) for o in micro.observables]),
                       tolerance=np.array([AIM * o.tolerance for o in micro.observables]),
@@ -75,20 +76,19 @@ def fit(*, micro, measure, say=print):
         say(rock_page.progress(found.steps[-1], micro, time.time() - began))
         return values
 
-    model = Surrogate(*micro.slopes())
-    for stage in (SMALL, FULL):
+    model, seen = Surrogate(*micro.slopes()), {}
+    for stage in (SMALL, FULL)[STAGES.index(first_stage):]:
         solution = solve(lambda x: statistics(tested(x, stage)), model, problem, start=found.x, most=MOST[stage.name])
         found.x = solution.x
         fitted = next(step for step in found.steps if step.stage == stage.name and np.array_equal(step.x, found.x))
-        model = model.next_stage(found.x)
-    seen = fitted.values
+        model, seen = model.next_stage(found.x), fitted.values
     for number in range(CHECKS):
         stage = replace(CHECK, name=f"check {number + 1}", seeds=tuple(seed + 10 * number for seed in CHECK.seeds))
         values = tested(found.x, stage)
         found.verdicts = {o: verdict(o, of_seeds) for o, of_seeds in values.items()}
         if number + 1 == CHECKS or all(one.met for one in found.verdicts.values()):
             break
-        seen = {o: np.concatenate([seen[o], values[o]]) for o in values}
+        seen = {o: np.concatenate([seen.get(o, []), values[o]]) for o in values}
         model.add(found.x, *statistics(seen))
         found.x = model.solve(problem, found.x)
         model = model.next_stage(found.x)
@@ -128,6 +128,7 @@ def main(words):
     try:
         values = parameters.read(GROUPS, words)
         targets = targets_of(values)
+        start = start_of(values)
         require(values["out"], "out", "nothing", "given: the folder of the results")
         folder = _folder(values["out"])
     except ParameterError as error:
@@ -135,11 +136,11 @@ def main(words):
         return 2
     radii = values["radius_min"], values["radius_max"]
     micro = Micro(law=values["bond_law"], targets=targets, radius=sum(radii) / 2,
-                  given=given_of(values, targets))
+                  given=given_of(values, targets, start), start=start)
     try:
-        with Runs(folder / "runs", keep=True) as runs:
+        with Runs(folder / "runs", at_once=values["jobs"], keep=True) as runs:
             laboratory = Laboratory(runs=runs, targets=targets, radii=radii, micro=micro)
-            found = fit(micro=micro, measure=laboratory.measure)
+            found = fit(micro=micro, measure=laboratory.measure, first_stage=values["first_stage"])
             found.not_failed, found.failures = laboratory.not_failed[found.steps[-1].stage], laboratory.failures
         rock_page.write(folder, found, micro=micro, targets=targets, values=values)
     except (RunFailed, OSError) as error:

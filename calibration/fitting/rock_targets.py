@@ -9,8 +9,8 @@ import numpy as np
 
 from rockwear.kernels.bond_laws import BOND_LAWS
 from rockwear.kernels.checks import ParameterError, finite, require
-from rockwear.kernels.parameter import Group, Parameter, choice, file, number, plausible, text
-from rockwear.model.rock_file import PROPERTIES, RADIUS, check_properties
+from rockwear.kernels.parameter import Group, Parameter, choice, file, integer, number, plausible, text
+from rockwear.model.rock_file import PROPERTIES, RADIUS, RockPresets, check_properties
 from rockwear.scenes.parameters import OF_ROCK
 
 NEEDED = "youngs_modulus", "poissons_ratio", "ucs", "tensile_strength"
@@ -19,6 +19,8 @@ POISSON = -0.2, 0.36
 """Poisson's ratios that bonds with springs along and across them can give."""
 LAWS = "brittle", "coulomb", "cohesive"
 """Bond laws that can be fitted, as far as they exist."""
+STAGES = "small", "full", "check"
+"""Of a fit, in this order."""
 GIVEN = "porosity", "weibull_modulus"
 """Parameters of the rock that are given and not fitted, beside its grains."""
 GRAINS = (5.0, 0.0), (11.0, 1.8), (math.inf, 2.2)
@@ -69,8 +71,14 @@ ROCK = Group("rock", (
     *(OF_ROCK[name] for name in GIVEN),
     Parameter("grain_edge", -1.0, "m", number(-1), "mean edge of grains; 0: none; -1: chosen by ucs over "
               "tensile_strength, which grains raise")))
+SEARCH = Group("search", (
+    Parameter("start", "", "", file, "rock, a name of the library or a file, whose bonds and grains the search begins "
+              "with; not needed"),
+    Parameter("first_stage", "small", "", choice(*STAGES), "small: search on small specimens, then on full ones, then "
+              "check; later ones begin near the end, which start must give"),
+    Parameter("jobs", 2, "", integer(1), "tests at a time")))
 OUTPUT = Group("output", (Parameter("out", "", "", text, "folder of rock.json, fit.md and all runs"),))
-GROUPS = [TARGETS, ROCK, OUTPUT]
+GROUPS = [TARGETS, ROCK, SEARCH, OUTPUT]
 
 
 @dataclass(frozen=True)
@@ -178,10 +186,29 @@ def _chosen(table, path, ucs):
     return tuple((least, table[least]) for least in kept), words
 
 
-def given_of(values, targets):
-    """{parameter of a scene: value} of what is not fitted. values: of GROUPS."""
+def start_of(values):
+    """{parameter: value at the radii of the fit} of the rock that the search begins with, {} without one. Raises
+    ParameterError."""
+    require(values["start"] or values["first_stage"] == STAGES[0], "first_stage", values["first_stage"],
+            f"{STAGES[0]} without start, a rock that is near")
+    if not values["start"]:
+        return {}
+    radii = {name: values[name] for name in ("radius_min", "radius_max")}
+    try:
+        found = RockPresets(OF_ROCK).defaults(values["start"], {**dict.fromkeys(OF_ROCK), **radii})
+    except ParameterError as error:
+        raise ParameterError("start", error.value, error.rule) from None
+    require(found["bond_law"] == values["bond_law"], "start", values["start"], f"a rock with the bond law "
+            f"{values['bond_law']}; it has {found['bond_law']}")
+    return found
+
+
+def given_of(values, targets, start=None):
+    """{parameter of a scene: value} of what is not fitted. values: of GROUPS; start: {parameter: value} of a rock."""
     edge = values["grain_edge"]
-    if edge < 0:
+    if edge < 0 and start:
+        edge = start.get("grain_edge", 0.0)
+    elif edge < 0:
         ratio = targets.ucs / targets.tensile_strength
         edge = (values["radius_min"] + values["radius_max"]) / 2 * next(part for most, part in GRAINS if ratio <= most)
     return {**{name: values[name] for name in GIVEN}, "grain_edge": float(f"{edge:.4g}")}

@@ -83,12 +83,12 @@ of 0: exact. What is not named has no influence."""
 
 class Micro:
     """The unknowns of one fit and what they mean. law: of rock_targets.LAWS; radius: mean radius, m; given: {parameter:
-    value} of what is not fitted; 0 is left out."""
+    value} of what is not fitted; 0 is left out; start: {parameter: value} of a rock to begin with."""
 
-    def __init__(self, *, law, targets, radius, given):
+    def __init__(self, *, law, targets, radius, given, start=None):
         self.law, self.radius, self.given = law, radius, {name: value for name, value in given.items() if value}
         self.observables = observables(targets)
-        guess = self._first_guess(targets)
+        guess = {**self._first_guess(targets), **self._of_rock(start)}
         spans = {"kn": 10, "kt_over_kn": (0.01, 4.0), "tension": 10, "shear": (0.5, 10.0), "mu": (0.05, 2.0),
                  "length": (radius, 100 * guess["length"])}
         bounds = {name: span if isinstance(span, tuple) else (guess[name] / span, guess[name] * span)
@@ -107,6 +107,19 @@ class Micro:
         toughness = t.fracture_toughness or TOUGHNESS * t.tensile_strength
         length = max(toughness**2 / t.youngs_modulus * kn / tension**2, 1.01 * self.radius)
         return {"kn": kn, "kt_over_kn": ratio, "tension": tension, "shear": shear, "mu": FRICTION, "length": length}
+
+    def _of_rock(self, start):
+        """{unknown: value} of the parameters of a rock: the inverse of `parameters`."""
+        if not start:
+            return {}
+        per = 2 * self.radius if self.law == "brittle" else 1.0
+        tension, shear = (start[name] / per for name in
+                          (("Rn", "Rt") if self.law == "brittle" else ("bond_tension", "bond_cohesion")))
+        found = {"kn": start["kn"], "kt_over_kn": start["kt"] / start["kn"], "tension": tension,
+                 "shear": shear / tension, "mu": start["mu"]}
+        if self.law == "cohesive":
+            found["length"] = start["bond_fracture_energy"] * start["kn"] / tension**2
+        return found
 
     def slopes(self):
         """(jacobian (m, n), deviation (m, n)) of the observables over the unknowns."""

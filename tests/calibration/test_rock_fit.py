@@ -8,7 +8,8 @@ import pytest
 from calibration.campaigns import library
 from calibration.fitting import rock_fit, rock_page, rock_targets
 from calibration.fitting.rock_unknowns import Micro
-from calibration.fitting.rock_targets import GROUPS, MOST_POINTS, Targets, given_of, read_table, targets_of
+from calibration.fitting.rock_targets import (
+    GROUPS, MOST_POINTS, Targets, given_of, read_table, start_of, targets_of)
 from rockwear.kernels.bond_laws import BOND_LAWS
 from rockwear.kernels.checks import ParameterError
 from rockwear.model import rock_file
@@ -137,6 +138,41 @@ def test_first_guesses_are_parameters_of_the_scenes(law):
     assert found.get("Rn", 5e-3 * 11.2e6) == pytest.approx(5e-3 * 11.2e6)
 
 
+def test_a_search_begins_with_the_bonds_of_a_rock_at_other_radii():
+    """The library's rock, of half the radii: stresses and grains over radii stay."""
+    part = rock_file.read(rock_file.find("p_sandstone"), OF_ROCK).parts["plane"].parameters
+    values = parameters.read(GROUPS, [word for name, value in {**GIVEN, "start": "p_sandstone", "radius_min": 5e-4,
+                                      "radius_max": 7.5e-4}.items() for word in (f"--{name}", str(value))])
+    targets, start = targets_of(values), start_of(values)
+    given = given_of(values, targets, start)
+    assert given["grain_edge"] == pytest.approx(0.5 * part["grain_edge"])
+    micro = Micro(law="cohesive", targets=targets, radius=6.25e-4, given=given, start=start)
+    found = micro.parameters(micro.first)
+    for name in ("kn", "kt", "bond_tension", "bond_cohesion", "bond_fracture_energy", "mu"):
+        assert found[name] == pytest.approx(part[name], rel=1e-4), name
+    for law, bonds in (("brittle", {"Rn": 1e4, "Rt": 5e4}), ("coulomb", {"bond_tension": 1e7, "bond_cohesion": 4e7})):
+        made = Micro(law=law, targets=targets, radius=1e-3, given={}, start=dict(kn=2e10, kt=5e9, mu=0.6, **bonds))
+        assert {name: made.parameters(made.first)[name] for name in bonds} == pytest.approx(bonds)
+
+
+def test_a_fit_can_begin_with_full_specimens_or_with_the_check():
+    """From the answer the check is all; from strengths a fifth too high the second check has the mended rock."""
+    micro, found, _ = fitted(SANDSTONE, scatter=1e-3)
+    again = Micro(law="brittle", targets=SANDSTONE, radius=1.25e-3, given={"porosity": 0.12},
+                  start=micro.parameters(found.x))
+    for stage, most in (("full", 4), ("check", 1)):
+        of_stage = rock_fit.fit(micro=again, measure=laboratory(again, 1e-3), first_stage=stage, say=str)
+        stages = [step.stage for step in of_stage.steps]
+        assert stages[0].startswith(stage) and len(stages) <= most and "small" not in stages
+        assert all(one.met for one in of_stage.verdicts.values())
+    far = Micro(law="brittle", targets=SANDSTONE, radius=1.25e-3, given={"porosity": 0.12},
+                start={name: 1.2 * value if name in ("Rn", "Rt") else value
+                       for name, value in micro.parameters(found.x).items()})
+    missed = rock_fit.fit(micro=far, measure=laboratory(far, 1e-3), first_stage="check", say=str)
+    assert [step.stage for step in missed.steps] == ["check 1", "check 2"]
+    assert all(one.met for one in missed.verdicts.values())
+
+
 # ---- what is refused
 
 GIVEN = {"youngs_modulus": 18e9, "poissons_ratio": 0.18, "ucs": 60e6, "tensile_strength": 7e6, "out": "out"}
@@ -160,6 +196,10 @@ BRITTLE = {"bond_law": "brittle"}
     ({"triaxial": "nowhere.csv"}, "triaxial = nowhere.csv: must be a readable CSV file"),
     ({"radius_max": 5e-4}, "radius_max = 0.0005 m: must be at least radius_min = 0.001"),
     ({"grain_edge": -2}, "grain_edge = -2 m: must be at least -1"),
+    ({"first_stage": "check"}, "first_stage = check: must be small without start"),
+    ({"start": "p_sandston"}, "start = p_sandston: must be a file, or one of hawkesbury"),
+    ({"start": "hawkesbury"}, "start = hawkesbury: must be a rock with the bond law cohesive; it has coulomb"),
+    ({"jobs": 0}, "jobs = 0: must be a whole number of at least 1"),
     ({"radius_min": 1}, "radius_min = 1 m: must be between 1e-06 and 0.1"),
     ({"bond_law": "padova"}, "bond_law = padova: must be one of"),
     ({"uc": 3}, "uc = 3: must be a parameter of this scene; did you mean ucs")])
