@@ -1,5 +1,6 @@
 """Bonds carried by YADE's concrete model: softening in C++, looked at from Python now and then."""
 import math
+from collections import namedtuple
 
 import numpy as np
 from yade import O, Vector3
@@ -7,40 +8,54 @@ from yade import O, Vector3
 from rockwear.engines.bond_log import INTACT, SEPARATED, BondLog, Crack
 
 LOOK_PERIOD = 10
-"""Steps between looks at the bonds that slip or soften."""
-SHARES = 8
-"""The others are looked at in so many turns."""
-UNSLIPPED = Vector3.Zero
+"""Steps between looks at a bond that has slipped or softened."""
+SHARES = 4
+"""The others are looked at so many times more rarely."""
+STRAIGHT = 10
+"""Points on the path that a bond is taken to have come before the first look that finds it softened or slipped."""
+ZERO = Vector3.Zero
 UNBREAKABLE = 1e29
 """Strength (N) from which a bond is not to break at all."""
 
 
-def _carried(vector, normal):
-    """A tangential vector of an earlier look, turned into the plane of the contact as it lies now."""
+def _in_plane(vector, normal):
+    """A vector turned into the plane of a contact, nearly in which it lies."""
     tangential = vector - normal * normal.dot(vector)
     length = tangential.norm()
     return tangential * (vector.norm() / length) if length > 0.0 else tangential
 
 
+_Contact = namedtuple("_Contact", "interaction geom phys slipped shear_force")
+"""A bond in YADE, with epsTPl and shearForce. YADE gives these by reference: they are what they are now at any time."""
+
+
 class CpmBonds(BondLog):
     """All bonds of the rock under a law that YADE's concrete model (Law2_ScGeom_CpmPhys_Cpm) is.
 
-    The C++ law gives every force. A look reads the damage omega and the slip of bonds, for the crack log and for the
-    energy: what damage dissipates follows from omega alone, and the work of slip from the displacements and forces of
-    two looks by the trapezoidal rule. C++ erases a bond that has opened to its end; if its particles meet again, that
-    is a plain contact, by their radii (which must not overlap when they are bonded). Bonds that have neither softened
-    nor slipped are looked at in turns, so that the cost stays a few percent of the step's.
+    The C++ law gives every force. A look reads the damage omega and the slip of a bond, for the crack log and for the
+    energy. What damage dissipates follows from omega alone. The work of slip is a sample: that of one step, the force
+    of its two ends times what the bond slipped, counts for all steps between two looks. (Forces of looks ten steps
+    apart, half a period of a bond, overstate it, because bonds slip while their force is low.) Bonds have their turns
+    one after the other, bond n at steps n, n + period, ..., so that samples of many bonds even out and every step costs
+    the same. Bonds that have neither softened nor slipped are looked at more rarely; what one slipped before it
+    is found to have, the law tells from a straight path to where it is found.
 
-    YADE turns the total shear strain of a bond with the contact, but not its plastic part: a look turns that part too.
-    Neither damage nor strains are in YADE's saved scenes: `state` holds them, and `erase_separated`, at every
-    canonical point, sets the damage from omega, which is all that a restart knows.
+    C++ erases a bond that has opened to its end; if its particles meet again, that is a plain contact, by their radii
+    (which must not overlap when they are bonded). YADE turns the total shear strain of a bond with the contact, but not
+    its plastic part: a look turns that part too. Neither damage nor strains are in YADE's saved scenes: `state` holds
+    them, and `erase_separated`, at every canonical point, sets the damage from omega, which is all that a restart
+    knows.
+
+    period: steps between two looks at a bond; 1: all bonds in every step. The engine itself is visited in every step.
     """
 
     def __init__(self, *, period=LOOK_PERIOD, **common):
-        super().__init__(period=period, **common)
+        super().__init__(period=1, **common)
+        self.between_looks = period
+        self.between_quiet = period * SHARES if period > 1 else 1
         self.dissipated, self.by_slip = np.zeros(len(self.pairs)), np.zeros(len(self.pairs))
-        self.turn, self.strains = 0, None
-        self.active = {}
+        self.strains = None
+        self.quiet, self.active, self.forces_before = [], [], {}
 
     @staticmethod
     def reference_overlap(phys):
@@ -62,84 +77,115 @@ class CpmBonds(BondLog):
 
     def connect(self):
         """Find the interactions of the scene that is in O now, and give them the strains of a restart."""
-        self.quiet, self.active = {}, {}
+        # By turn: {number: contact} and {number: (contact, omega and slipped part of the strain at the last look)}.
+        self.quiet = [{} for _ in range(self.between_quiet)]
+        self.active = [{} for _ in range(self.between_looks)]
         for n in np.flatnonzero(self.status == INTACT).tolist():
             interaction = O.interactions[tuple(self.pairs[n].tolist())]
             phys = interaction.phys
-            # YADE gives this vector by reference: it is what it is now at any time.
-            self.quiet[n] = interaction, interaction.geom, phys, phys.epsTPl
+            self._quiet_turn(n)[n] = _Contact(interaction, interaction.geom, phys, phys.epsTPl, phys.shearForce)
         if self.strains is not None:
             self._set_strains(*self.strains)
             self.strains = None
         self.separations = int(np.sum(self.status == SEPARATED))
+        self._prepare()
+
+    def _quiet_turn(self, n):
+        return self.quiet[n % len(self.quiet)]
+
+    def _active_turn(self, n):
+        return self.active[n % len(self.active)]
 
     def _set_strains(self, omegas, totals, plastics):
-        for n, omega, total, plastic in zip(list(self.quiet), omegas.tolist(), totals.tolist(), plastics.tolist()):
-            _, geom, phys, held = self.quiet[n]
+        for n, omega, total, plastic in zip(sorted(self._intact()), omegas.tolist(), totals.tolist(),
+                                            plastics.tolist()):
+            contact = self._quiet_turn(n)[n]
+            strain = contact.phys.epsT
             for k in range(3):
-                phys.epsT[k], held[k] = total[k], plastic[k]
+                strain[k], contact.slipped[k] = total[k], plastic[k]
             if omega or any(plastic):
-                phys.setDamage(omega)
-                self.active[n] = self.quiet.pop(n), omega, self._shear(geom, phys)
+                contact.phys.setDamage(omega)
+                self._keep(n, self._quiet_turn(n).pop(n))
+
+    def _keep(self, n, contact):
+        """Remember the damage and slip of an active bond as they are now."""
+        self._active_turn(n)[n] = contact, contact.phys.omega, contact.slipped * 1.0
+
+    def _prepare(self):
+        """Keep the forces (N) of the bonds whose turn is in the next step."""
+        turn = self.active[(O.iter + 1) % len(self.active)]
+        self.forces_before = {n: contact.shear_force * -1.0 for n, (contact, _, _) in turn.items()}
 
     def act(self):
-        """Look at the active bonds, and at a share of the quiet ones."""
-        share = [n for n in self.quiet if n % SHARES == self.turn]
-        self.turn = (self.turn + 1) % SHARES
-        self._look([*self.active, *share])
+        """Look at the bonds whose turn it is."""
+        for n, (contact, omega, slipped) in list(self.active[O.iter % len(self.active)].items()):
+            # YADE leaves the slip of a bond without any shear strength as it is.
+            if contact.slipped == slipped and contact.phys.omega == omega and contact.shear_force != ZERO:
+                continue
+            self._look(n, contact, omega, self.forces_before.get(n))
+        self._look_at_quiet(self.quiet[O.iter % len(self.quiet)])
+        self._prepare()
 
-    def _look(self, numbers):
-        """Bring dissipation and status of these bonds up to date."""
-        for n in list(numbers):
-            if n in self.active:
-                contact, omega, before = self.active[n]
-                if contact[2].omega == omega and contact[3] == before[2]:
-                    continue
-            else:
-                contact, omega, before = self.quiet[n], 0.0, None
-                if contact[2].omega == 0.0 and contact[3] == UNSLIPPED:
-                    continue
-                self.active[n] = self.quiet.pop(n), 0.0, None
-            self._account(n, contact[1], contact[2], omega, before)
+    def _look_at_quiet(self, turn):
+        for n, contact in list(turn.items()):
+            if contact.slipped != ZERO or contact.phys.omega:
+                del turn[n]
+                self._dissipate_by_slip(n, self._straight(self.laws[n], contact))
+                self._damage(n, contact, 0.0)
 
     @staticmethod
-    def _shear(geom, phys):
-        """Tangential displacement (m), force (N) on the second body, in the law's sign, and the strain that slipped."""
-        return phys.epsT * phys.refLength, _carried(-phys.shearForce, geom.normal), Vector3(phys.epsTPl)
+    def _straight(law, contact):
+        """Work (J) of slip of a bond as if it had come to its displacements on a straight path."""
+        phys, bond, work, before = contact.phys, law.initial_state(), 0.0, 0.0
+        un = law.opening(min(phys.omega, 1.0)) if phys.omega else -phys.normalForce.dot(contact.geom.normal) / law.kn
+        ut = phys.epsT.norm() * phys.refLength
+        for k in range(1, STRAIGHT + 1):
+            _, (Ft,) = law.respond(bond, un * k / STRAIGHT, (ut * k / STRAIGHT,))
+            work, before = work + 0.5 * (Ft + before) * ut / STRAIGHT, Ft
+        return work - 0.5 * before**2 / law.kt
 
-    def _account(self, n, geom, phys, omega_before, before):
-        law, omega, normal, length = self.laws[n], phys.omega, geom.normal, phys.refLength
-        gone = omega >= 1.0 and not phys.neverDamage
-        total, force, _ = self._shear(geom, phys)
-        if gone:
-            force = force * 0.0
-        elastic = force / law.kt
-        if before is None:
-            # All shear force that a bond had before it broke is gone with it.
-            lost = total * min(law.kt, law.Rt / max(total.norm(), 1e-300)) if gone else force
-            slip, mean = total - elastic, 0.5 * (force + lost)
-        else:
-            total_before, force_before = (_carried(vector, normal) for vector in before[:2])
-            slip, mean = total - total_before - elastic + force_before / law.kt, 0.5 * (force + force_before)
-        work = mean.dot(slip)
-        self.by_slip[n] += work
+    def _look(self, n, contact, omega_before, force_before=None):
+        """Bring an active bond up to date; with its force at the start of the step, sample its slip."""
+        force, law = -contact.shear_force, self.laws[n]
+        if contact.phys.omega >= 1.0:
+            # Its last shear force went with it: YADE leaves that of the step before.
+            self._dissipate_by_slip(n, 0.5 * force.squaredNorm() / law.kt)
+        elif force_before is not None:
+            work = (force + force_before).dot(contact.geom.shearInc)
+            stored = (force.squaredNorm() - force_before.squaredNorm()) / law.kt
+            self._dissipate_by_slip(n, 0.5 * self.between_looks * (work - stored))
+        self._damage(n, contact, omega_before)
+
+    def _damage(self, n, contact, omega_before):
+        """Bring the damage up to date; turn the slip of a bond that has not broken."""
+        law, omega = self.laws[n], contact.phys.omega
         if omega > omega_before:
-            work += law.dissipated(min(omega, 1.0)) - law.dissipated(omega_before)
+            self._dissipate(n, law.dissipated(min(omega, 1.0)) - law.dissipated(omega_before))
+        if omega < 1.0:
+            self._turn(contact)
+            self._keep(n, contact)
+        else:
+            self._break(n, contact)
+
+    @staticmethod
+    def _turn(contact):
+        """Turn the slipped part of the strain into the plane of the contact: the total strain less the elastic one."""
+        phys, slipped = contact.phys, contact.slipped
+        elastic = _in_plane(contact.shear_force, contact.geom.normal) / (-phys.ks * phys.refLength)
+        # In place: this is YADE's own vector.
+        slipped += phys.epsT - elastic - slipped
+
+    def _dissipate_by_slip(self, n, work):
+        self.by_slip[n] += work
+        self._dissipate(n, work)
+
+    def _dissipate(self, n, work):
         self.dissipated[n] += work
         self.energy_released += work
-        if gone:
-            self._break(n)
-            return
-        plastic = (total - elastic) / length
-        contact = self.active[n][0]
-        for k in range(3):
-            contact[3][k] = plastic[k]
-        self.active[n] = contact, omega, (total, force, plastic)
 
-    def _break(self, n):
-        interaction = self.active[n][0][0]
+    def _break(self, n, contact):
         self._separate(n)
-        first, second = O.bodies[interaction.id1], O.bodies[interaction.id2]
+        first, second = O.bodies[contact.interaction.id1], O.bodies[contact.interaction.id2]
         if first is None or second is None:
             return
         place, line = 0.5 * (first.state.pos + second.state.pos), second.state.pos - first.state.pos
@@ -150,12 +196,17 @@ class CpmBonds(BondLog):
     def _separate(self, n):
         self.separations += self.status[n] != SEPARATED
         self.status[n] = SEPARATED
-        self.active.pop(n, None)
-        self.quiet.pop(n, None)
+        self._active_turn(n).pop(n, None)
+        self._quiet_turn(n).pop(n, None)
 
     def look_at_all(self):
-        """Bring dissipation and status of all bonds up to date."""
-        self._look([*self.active, *self.quiet])
+        """Bring damage and status of all bonds up to date."""
+        for turn in self.active:
+            for n, (contact, omega, _) in list(turn.items()):
+                if contact.phys.omega != omega:
+                    self._look(n, contact, omega)
+        for turn in self.quiet:
+            self._look_at_quiet(turn)
 
     def erase_separated(self):
         """At a canonical point: all bonds up to date, those of erased bodies separated, damage as a restart sets it."""
@@ -163,26 +214,32 @@ class CpmBonds(BondLog):
         kept = np.array([body is not None for body in map(O.bodies.__getitem__, range(int(self.pairs.max()) + 1))])
         for n in np.flatnonzero(~kept[self.pairs].all(axis=1)).tolist():
             self._separate(n)
-        self.quiet, self.active = dict(sorted(self.quiet.items())), dict(sorted(self.active.items()))
-        for n, (contact, omega, _) in self.active.items():
-            _, geom, phys, _ = contact
+        self.quiet = [dict(sorted(turn.items())) for turn in self.quiet]
+        self.active = [dict(sorted(turn.items())) for turn in self.active]
+        for n, (contact, omega, _) in [bond for turn in self.active for bond in turn.items()]:
             if omega:
-                phys.setDamage(omega)
-            self.active[n] = contact, omega, self._shear(geom, phys)
+                contact.phys.setDamage(omega)
+            self._turn(contact)
+            self._keep(n, contact)
+        self._prepare()
 
     def _shift(self, n, shift):
-        _, geom, phys, _ = self.active[n][0] if n in self.active else self.quiet[n]
-        phys.refPD += shift
-        return geom, phys
+        turn = self._active_turn(n)
+        contact = turn[n][0] if n in turn else self._quiet_turn(n)[n]
+        contact.phys.refPD += shift
+        return contact.geom, contact.phys
 
     def _intact(self):
-        """{number: (interaction, geom, phys, its epsTPl)} of all bonds."""
-        return {**self.quiet, **{n: contact for n, (contact, _, _) in self.active.items()}}
+        """{number: contact} of all bonds."""
+        found = {n: contact for turn in self.active for n, (contact, _, _) in turn.items()}
+        for turn in self.quiet:
+            found.update(turn)
+        return found
 
     def softening(self):
         """(m,) from 0, a bond in its initial state, to 1, a broken one."""
         found = np.where(self.status == INTACT, 0.0, 1.0)
-        for n, (_, omega, _) in self.active.items():
+        for n, (_, omega, _) in [bond for turn in self.active for bond in turn.items()]:
             found[n] = min(omega, 1.0)
         return found
 
@@ -190,21 +247,20 @@ class CpmBonds(BondLog):
         """Strain energy (J) of all bonds, sum of Fn^2/2kn + Ft^2/2kt with the secant kn of softened ones."""
         self.look_at_all()
         energy = []
-        for _, geom, phys, _ in self._intact().values():
+        for _, geom, phys, _, _ in self._intact().values():
             # epsN would tell tension too, but YADE does not save it.
             kn = phys.kn * (1.0 - phys.omega if phys.normalForce.dot(geom.normal) < 0.0 else 1.0)
             energy.append(0.5 * (phys.normalForce.squaredNorm() / kn + phys.shearForce.squaredNorm() / phys.ks))
         return math.fsum(energy)
 
     def state(self):
-        bonds = [contact[2] for _, contact in sorted(self._intact().items())]
+        bonds = [contact.phys for _, contact in sorted(self._intact().items())]
         return {**super().state(), "dissipated": self.dissipated.copy(), "by_slip": self.by_slip.copy(),
-                "turn": self.turn, "omega": np.array([phys.omega for phys in bonds], float),
+                "omega": np.array([phys.omega for phys in bonds], float),
                 "strain": np.array([phys.epsT for phys in bonds], float).reshape(-1, 3),
                 "plastic_strain": np.array([phys.epsTPl for phys in bonds], float).reshape(-1, 3)}
 
     def restore(self, state):
         super().restore(state)
         self.dissipated, self.by_slip = state["dissipated"].copy(), state["by_slip"].copy()
-        self.turn = int(state["turn"])
         self.strains = state["omega"], state["strain"], state["plastic_strain"]

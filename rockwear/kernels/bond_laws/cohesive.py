@@ -54,13 +54,20 @@ class Cohesive(LinearBondLaw):
         """(J to break the bond in pure tension, math.inf in pure shear, where it slips)."""
         return 0.5 * self.Rn * self.gone, math.inf
 
+    def opening(self, softening):
+        """Largest opening (m) so far of a bond of this omega > 0."""
+        return self.onset / (1.0 - softening * (1.0 - self.onset / self.gone))
+
     def dissipated(self, softening):
         """Energy (J) that damage has dissipated at this omega."""
-        u0, uf = self.onset, self.gone
-        u = u0 / (1.0 - softening * (1.0 - u0 / uf))
+        u0, uf, u = self.onset, self.gone, self.opening(softening)
         # Under the curve up to u, less what unloading along the secant gives back.
         force = self.Rn * (uf - u) / (uf - u0)
         return 0.5 * (self.Rn * u0 + (self.Rn + force) * (u - u0) - force * u)
+
+    def shear_limit(self, softening, Fn):
+        """|Ft| (N) at which a bond of this omega slips under the normal force Fn (N)."""
+        return max((1.0 - softening) * self.Rt - self.mu * Fn, 0.0)
 
     def _bonded(self, bond, un, ut):
         omega, u0 = bond.softening, self.onset
@@ -71,7 +78,7 @@ class Cohesive(LinearBondLaw):
             bond.softening = omega
         Fn = self.kn * un * (1.0 - omega if un > 0.0 else 1.0)
         Ft = self._shear(bond, Fn, ut)
-        norm, limit = math.hypot(*Ft), max((1.0 - omega) * self.Rt - self.mu * Fn, 0.0)
+        norm, limit = math.hypot(*Ft), self.shear_limit(omega, Fn)
         if norm > limit:
             Ft = self._slip(bond, ut, Ft, limit / norm)
         return Fn, Ft

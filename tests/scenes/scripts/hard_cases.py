@@ -135,6 +135,11 @@ class Eraser(base.Engine):
         self.first = O.iter
 
 
+def numbers(group):
+    """Those of a group of bonds, which may be divided into turns."""
+    return set().union(*group) if isinstance(group, list) else set(group)
+
+
 def erased(law):
     """Discs erased while their bonds soften, break, and slide; afterwards no energy is lost or found."""
     middle = ROWS // 2 * COLUMNS
@@ -143,7 +148,7 @@ def erased(law):
     groups = ("active", "quiet") if law.yade_law == "Cpm" else ("elastic", "softening_bonds", "returned", "broken")
     seen = dict.fromkeys(groups, 0)
     for step in range(240):
-        fixed = {name: set(getattr(bonds, name)) for name in seen}
+        fixed = {name: numbers(getattr(bonds, name)) for name in seen}
         discs = set(range(len(O.bodies))) - {body.id for body in O.bodies if body}
         run(1)
         new = {i for i in range(len(O.bodies)) if O.bodies[i] is None} - discs
@@ -159,7 +164,8 @@ def erased(law):
     return {"erased": len(gone), "seen": seen, "all gone": bool((bonds.status[touching] == SEPARATED).all()),
             "others alive": int((bonds.status[~touching] == INTACT).sum()), "cracks": len(bonds.cracks),
             "broken": int((bonds.status == BROKEN).sum()), "residual": (energy() - before) / before,
-            "left over": sum(n in getattr(bonds, name) for n in np.flatnonzero(touching) for name in groups)}
+            "left over": sum(n in numbers(getattr(bonds, name)) for n in np.flatnonzero(touching)
+                             for name in groups)}
 
 
 def cycled(law, seed=4, legs=60):

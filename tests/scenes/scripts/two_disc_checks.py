@@ -208,7 +208,7 @@ def resuming(law):
             O.save(path)
             O.reset()
             O.load(path)
-            bonds = CARRIERS[law.yade_law](pairs=np.array([[0, 1]]), law=law, clock=lambda: O.time)
+            bonds = CARRIERS[law.yade_law](pairs=np.array([[0, 1]]), law=law, clock=lambda: O.time, period=1)
             bonds.restore(state)
             base.register([bonds])
             bonds.connect()
