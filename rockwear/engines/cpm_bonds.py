@@ -25,6 +25,17 @@ def _in_plane(vector, normal):
     return tangential * (vector.norm() / length) if length > 0.0 else tangential
 
 
+def _slip_before(law, contact):
+    """Work (J) of slip of a bond as if it had come to its displacements on a straight path."""
+    phys, bond, work, before = contact.phys, law.initial_state(), 0.0, 0.0
+    un = law.opening(min(phys.omega, 1.0)) if phys.omega else -phys.normalForce.dot(contact.geom.normal) / law.kn
+    ut = phys.epsT.norm() * phys.refLength
+    for k in range(1, STRAIGHT + 1):
+        _, (Ft,) = law.respond(bond, un * k / STRAIGHT, (ut * k / STRAIGHT,))
+        work, before = work + 0.5 * (Ft + before) * ut / STRAIGHT, Ft
+    return work - 0.5 * before**2 / law.kt
+
+
 _Contact = namedtuple("_Contact", "interaction geom phys slipped shear_force")
 """A bond in YADE, with epsTPl and shearForce. YADE gives these by reference: they are what they are now at any time."""
 
@@ -130,37 +141,26 @@ class CpmBonds(BondLog):
         for n, contact in list(turn.items()):
             if contact.slipped != ZERO or contact.phys.omega:
                 del turn[n]
-                self._dissipate_by_slip(n, self._straight(self.laws[n], contact))
+                self._dissipate(n, _slip_before(self.laws[n], contact), True)
                 self._damage(n, contact, 0.0)
-
-    @staticmethod
-    def _straight(law, contact):
-        """Work (J) of slip of a bond as if it had come to its displacements on a straight path."""
-        phys, bond, work, before = contact.phys, law.initial_state(), 0.0, 0.0
-        un = law.opening(min(phys.omega, 1.0)) if phys.omega else -phys.normalForce.dot(contact.geom.normal) / law.kn
-        ut = phys.epsT.norm() * phys.refLength
-        for k in range(1, STRAIGHT + 1):
-            _, (Ft,) = law.respond(bond, un * k / STRAIGHT, (ut * k / STRAIGHT,))
-            work, before = work + 0.5 * (Ft + before) * ut / STRAIGHT, Ft
-        return work - 0.5 * before**2 / law.kt
 
     def _look(self, n, contact, omega_before, force_before=None):
         """Bring an active bond up to date; with its force at the start of the step, sample its slip."""
         force, law = -contact.shear_force, self.laws[n]
         if contact.phys.omega >= 1.0:
             # Its last shear force went with it: YADE leaves that of the step before.
-            self._dissipate_by_slip(n, 0.5 * force.squaredNorm() / law.kt)
+            self._dissipate(n, 0.5 * force.squaredNorm() / law.kt, True)
         elif force_before is not None:
             work = (force + force_before).dot(contact.geom.shearInc)
             stored = (force.squaredNorm() - force_before.squaredNorm()) / law.kt
-            self._dissipate_by_slip(n, 0.5 * self.between_looks * (work - stored))
+            self._dissipate(n, 0.5 * self.between_looks * (work - stored), True)
         self._damage(n, contact, omega_before)
 
     def _damage(self, n, contact, omega_before):
         """Bring the damage up to date; turn the slip of a bond that has not broken."""
         law, omega = self.laws[n], contact.phys.omega
         if omega > omega_before:
-            self._dissipate(n, law.dissipated(min(omega, 1.0)) - law.dissipated(omega_before))
+            self._dissipate(n, law.dissipated(min(omega, 1.0)) - law.dissipated(omega_before), False)
         if omega < 1.0:
             self._turn(contact)
             self._keep(n, contact)
@@ -175,13 +175,11 @@ class CpmBonds(BondLog):
         # In place: this is YADE's own vector.
         slipped += phys.epsT - elastic - slipped
 
-    def _dissipate_by_slip(self, n, work):
-        self.by_slip[n] += work
-        self._dissipate(n, work)
-
-    def _dissipate(self, n, work):
+    def _dissipate(self, n, work, by_slip):
         self.dissipated[n] += work
         self.energy_released += work
+        if by_slip:
+            self.by_slip[n] += work
 
     def _break(self, n, contact):
         self._separate(n)
@@ -216,11 +214,12 @@ class CpmBonds(BondLog):
             self._separate(n)
         self.quiet = [dict(sorted(turn.items())) for turn in self.quiet]
         self.active = [dict(sorted(turn.items())) for turn in self.active]
-        for n, (contact, omega, _) in [bond for turn in self.active for bond in turn.items()]:
+        for n, (contact, omega, slipped) in [bond for turn in self.active for bond in turn.items()]:
             if omega:
                 contact.phys.setDamage(omega)
-            self._turn(contact)
-            self._keep(n, contact)
+            if contact.slipped != slipped:
+                self._turn(contact)
+                self._keep(n, contact)
         self._prepare()
 
     def _shift(self, n, shift):
