@@ -9,6 +9,7 @@ from rockwear.kernels.viscous_spring import viscous_spring
 SUPPORT_RADIUS = 1e4
 """Radius of a support over that of its particle: their line keeps its direction, and its spring its linearity."""
 MATERIAL = "absorbing boundary"
+IDLE_PLACE = Vector3(0, 0, 1e9)
 NO_SLIP = 1e9
 """Coefficient of friction of a support."""
 COLUMNS = ("numbers", "supports", "places", "normals", "forces", "kn", "kt", "cn", "ct")
@@ -95,6 +96,8 @@ class AbsorbingBoundary(Engine):
             exerted[k] = now.get(number, 0.0)
         self.released += float(self._energies()[gone].sum())
         for k in gone.tolist():
+            # The loop would make the contact again, as one of rock on rock, if the two still met.
+            O.bodies[int(self.supports[k])].state.pos = IDLE_PLACE
             O.interactions.erase(int(self.numbers[k]), int(self.supports[k]))
             O.forces.setPermF(int(self.numbers[k]), Vector3.Zero)
         self.idle = np.concatenate([self.idle, self.supports[gone]])

@@ -5,9 +5,9 @@ import numpy as np
 
 from rockwear.kernels.checks import positive, require
 
-NORMAL_SPRING, TANGENTIAL_SPRING = 1.0, 0.5
+NORMAL_SPRING, TANGENTIAL_SPRING = 1.6, 0.8
 """alpha_n, alpha_t of K = alpha G/r per area."""
-NORMAL_DASHPOT, TANGENTIAL_DASHPOT = 1.0, 1.0
+NORMAL_DASHPOT, TANGENTIAL_DASHPOT = 1.05, 0.93
 """a, b of a rho c_P and b rho c_S per area."""
 
 Constants = namedtuple("Constants", "kn kt cn ct")

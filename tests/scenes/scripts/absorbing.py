@@ -1,0 +1,164 @@
+"""Pulses that meet a boundary that absorbs; writes {check: number} to the file named last.
+
+    yade -n -x absorbing.py [lattice|packing] FILE
+"""
+import json
+import math
+import sys
+
+import numpy as np
+from yade import O, utils
+
+from rockwear.engines import base
+from rockwear.engines.access import rock_states
+from rockwear.engines.absorbing_boundary import AbsorbingBoundary
+from rockwear.kernels.bond_laws import ElasticBrittle
+from rockwear.kernels.elastic_moduli import elastic_moduli
+from rockwear.kernels.stability import critical_time_step
+from rockwear.kernels.viscous_spring import shares
+from rockwear.model.rock import Arranged, Specimen
+from rockwear.scenes import yade_scene
+
+LAW = ElasticBrittle(kn=2e10, kt=5e9, Rn=1e30, Rt=1e30, mu=0.5)
+RADIUS = 1e-3
+WIDTH, HEIGHT = 130, 80
+"""Diameters."""
+AMPLITUDES = 1e-12, 1e-10, 1e-8, 1e-6
+"""m, one after the other in one block: what is left of a pulse is nothing beside the next."""
+LOAD_STEP = 1e-12
+"""s of the one step that gives the rock the displacements of the pulse."""
+
+
+def lattice():
+    """Discs that touch in equilateral triangles."""
+    rows = round(HEIGHT * 2 / math.sqrt(3))
+    places = np.array([(RADIUS * (1 + 2 * column + row % 2), RADIUS * (1 + math.sqrt(3) * row))
+                       for row in range(rows) for column in range(WIDTH)])
+    box = RADIUS * (2 * WIDTH + 1), RADIUS * (2 + math.sqrt(3) * (rows - 1))
+    return Arranged(positions=places, radius=RADIUS, width=box[0], height=box[1], density=2500.0)
+
+
+def packing():
+    """Discs of two thirds to four thirds of the mean radius."""
+    return Specimen(width=2 * RADIUS * WIDTH, height=2 * RADIUS * HEIGHT, radius_min=0.8 * RADIUS,
+                    radius_max=1.2 * RADIUS, porosity=0.12, seed=1, bonding_gap=0.1 * RADIUS, density=2500.0)
+
+
+class Pulse:
+    """A beam of P or S waves towards the bottom of a block: Gaussian along its way and across."""
+
+    def __init__(self, rock, kind, degrees, wavelength, speed, amplitude):
+        angle = math.radians(degrees)
+        self.way = np.array([math.sin(angle), -math.cos(angle)])
+        self.aside = np.array([math.cos(angle), math.sin(angle)])
+        self.moves = self.way if kind == "P" else self.aside
+        self.shear = kind == "S"
+        self.k, self.speed, self.amplitude = 2 * math.pi / wavelength, speed, amplitude
+        self.lengths = 0.6 * wavelength, wavelength
+        self.height = 0.5 * rock.height
+        self.from_centre = rock.positions - (0.5 * rock.width - self.height * math.tan(angle), self.height)
+
+    def at(self, time):
+        """(n, 3) m, m and rad: displacements and rotations, half the curl."""
+        along, aside = self.from_centre @ self.way - self.speed * time, self.from_centre @ self.aside
+        envelope = np.exp(-0.5 * (along / self.lengths[0])**2 - 0.5 * (aside / self.lengths[1])**2)
+        size = self.amplitude * envelope * np.cos(self.k * along)
+        slope = -self.amplitude * self.k * envelope * np.sin(self.k * along) - along / self.lengths[0]**2 * size
+        # The curl of aside * f(along): way x aside = 1.
+        turn = 0.5 * slope if self.shear else np.zeros(len(size))
+        return np.column_stack([size[:, None] * self.moves, turn])
+
+
+def move(velocities):
+    for body, (x, y, spin) in zip(O.bodies, velocities.tolist()):
+        body.state.vel, body.state.angVel = (x, y, 0), (0, 0, spin)
+
+
+class Block:
+    """A block of rock in YADE, its other sides free."""
+
+    def __init__(self, rock):
+        self.rock = rock
+        self.rock.bond(LAW)
+        low = 8 * RADIUS
+        self.moduli = elastic_moduli(positions=rock.positions, radii=rock.radii, bonds=rock.pairs, kn=LAW.kn, kt=LAW.kt,
+                                     box=((low, low), (rock.width - low, rock.height - low)))
+        self.density = float(rock.masses.sum()) / (rock.width * rock.height)
+        if isinstance(rock, Arranged):
+            # The density of the lattice: its box is wider than its cells.
+            self.density = float(rock.masses[0]) / (2 * math.sqrt(3) * RADIUS**2)
+        O.reset()
+        yade_scene.put_rock_materials(mu=LAW.mu)
+        yade_scene.put_rock(rock)
+        yade_scene.put_loop(rock=LAW, ratcheting_free=False)
+        self.bonds = yade_scene.bonds_engine(rock, LAW, lambda: O.time)
+        yade_scene.make_bonds(rock, self.bonds)
+        self.boundary = AbsorbingBoundary(moduli=self.moduli, density=self.density, period=2)
+        self.engines = [self.bonds, self.boundary]
+        base.register(self.engines)
+        base.insert(self.engines)
+        self.bonds.connect()
+        self.step = 0.8 * critical_time_step(
+            positions=rock.positions, radii=rock.radii, masses=rock.masses, inertias=rock.inertias, bonds=rock.pairs,
+            kn=LAW.kn, kt=LAW.kt)
+
+    def hold_bottom(self):
+        low = np.flatnonzero(self.rock.positions[:, 1] < 1.05 * self.rock.radii)
+        x, y = self.rock.positions[low].T
+        distances = np.hypot(x - 0.5 * self.rock.width, self.rock.height - y)
+        self.boundary.hold(low, [(0.0, -1.0)] * len(low), shares(x, 0, self.rock.width), distances)
+
+    def energy(self):
+        return utils.kineticEnergy() + self.bonds.elastic_energy() + self.boundary.elastic_energy()
+
+    def give(self, pulse):
+        """The displacements of the pulse in one step of almost no length, then its velocities."""
+        O.dt = LOAD_STEP
+        move(pulse.at(0.0) / LOAD_STEP)
+        base.run(1)
+        O.dt = self.step
+        move((pulse.at(0.0) - pulse.at(-self.step)) / self.step)
+
+    def fastest(self, wavelength):
+        """Largest speed (m/s) of a particle that is not within a wavelength of the free sides."""
+        x, values = self.rock.positions[:, 0], rock_states(self.rock)[:, 3:5]
+        return float(np.hypot(*values[abs(x - 0.5 * self.rock.width) < 0.5 * self.rock.width - wavelength].T).max())
+
+
+def reflected(block, kind, degrees, wavelength, amplitude):
+    """Amplitude of what comes back over that of the pulse: of speed, and by energies; and the energy that is missed."""
+    rock, speed = block.rock, block.moduli.speeds(block.density)["PS".index(kind)]
+    pulse = Pulse(rock, kind, degrees, wavelength, speed, amplitude)
+    block.give(pulse)
+    block.hold_bottom()
+    base.run(1)
+    first, speed_first = block.energy(), block.fastest(wavelength)
+    before = block.boundary.absorbed
+    base.run(round(rock.height / math.cos(math.radians(degrees)) / speed / block.step))
+    block.boundary.act()
+    left = block.energy()
+    return {"amplitude": block.fastest(wavelength) / speed_first, "by_energy": math.sqrt(left / first),
+            "missed": (first - left - (block.boundary.absorbed - before)) / first}
+
+
+def let_go(block):
+    """Energy that particles gain when they are let go, over what the springs of half a radius would hold."""
+    before, springs = block.energy(), float(np.sum(block.boundary.kn)) * RADIUS**2 / 8
+    block.boundary.let_go(block.boundary.numbers.copy())
+    base.run(3)
+    return abs(block.energy() - before) / springs
+
+
+def main():
+    kind = sys.argv[-2] if sys.argv[-2] == "packing" else "lattice"
+    make, wavelength = {"lattice": (lattice, 40 * RADIUS), "packing": (packing, 40 * RADIUS)}[kind]
+    block = Block(make())
+    pulses = [(wave, degrees) for wave in "PS" for degrees in (0, 45)]
+    found = {f"{wave}{degrees}": reflected(block, wave, degrees, wavelength, amplitude)
+             for (wave, degrees), amplitude in zip(pulses, AMPLITUDES)}
+    found["let_go"] = let_go(block)
+    with open(sys.argv[-1], "w", encoding="utf-8") as file:
+        json.dump(found, file)
+
+
+main()
