@@ -51,7 +51,6 @@ class Pulse:
         angle = math.radians(degrees)
         self.way = np.array([math.sin(angle), -math.cos(angle)])
         self.aside = np.array([math.cos(angle), math.sin(angle)])
-        self.moves = self.way if kind == "P" else self.aside
         self.shear = kind == "S"
         self.k, self.speed, self.amplitude = 2 * math.pi / wavelength, speed, amplitude
         self.lengths = 0.6 * wavelength, wavelength
@@ -59,14 +58,18 @@ class Pulse:
         self.from_centre = rock.positions - (0.5 * rock.width - self.height * math.tan(angle), self.height)
 
     def at(self, time):
-        """(n, 3) m, m and rad: displacements and rotations, half the curl."""
-        along, aside = self.from_centre @ self.way - self.speed * time, self.from_centre @ self.aside
-        envelope = np.exp(-0.5 * (along / self.lengths[0])**2 - 0.5 * (aside / self.lengths[1])**2)
-        size = self.amplitude * envelope * np.cos(self.k * along)
-        slope = -self.amplitude * self.k * envelope * np.sin(self.k * along) - along / self.lengths[0]**2 * size
-        # The curl of aside * f(along): way x aside = 1.
-        turn = 0.5 * slope if self.shear else np.zeros(len(size))
-        return np.column_stack([size[:, None] * self.moves, turn])
+        """(n, 3) m, m and rad: displacements, the gradient or the curl of a potential, and rotations, half their
+        curl. (A beam along its way alone would be P and S, and the part of the wrong speed goes back.)"""
+        k, (length, breadth) = self.k, self.lengths
+        s, a = self.from_centre @ self.way - self.speed * time, self.from_centre @ self.aside
+        size = self.amplitude * np.exp(-0.5 * (s / length)**2 - 0.5 * (a / breadth)**2)
+        sine, cosine = size * np.sin(k * s) / k, size * np.cos(k * s)
+        along, aside = cosine - s / length**2 * sine, -a / breadth**2 * sine
+        if not self.shear:
+            return np.column_stack([np.outer(along, self.way) + np.outer(aside, self.aside), np.zeros(len(s))])
+        turn = ((s / length**2)**2 + (a / breadth**2)**2 - 1 / length**2 - 1 / breadth**2 - k**2) * sine
+        turn -= 2 * s / length**2 * cosine
+        return np.column_stack([np.outer(along, self.aside) - np.outer(aside, self.way), 0.5 * turn])
 
 
 def move(velocities):
