@@ -57,6 +57,13 @@ class BondLog(Engine):
             touching[n] = phys.normalForce.squaredNorm() > 0
         return touching
 
+    def take_slip_work(self, particles):
+        """(particles,) J that slip within bonds has dissipated since the last call: each particle half of its bonds'.
+
+        Only bonds of YADE's concrete model tell: others soften in one with their slip.
+        """
+        return np.zeros(particles)
+
     def state(self):
         return {"status": self.status.copy(), "energy_released": self.energy_released,
                 "cracks": np.array(self.cracks, float).reshape(-1, len(Crack._fields))}

@@ -25,6 +25,10 @@ def _in_plane(vector, normal):
     return tangential * (vector.norm() / length) if length > 0.0 else tangential
 
 
+def _turn_of(n, turns):
+    return turns[n % len(turns)]
+
+
 def _slip_before(law, contact):
     """Work (J) of slip of a bond as if it had come to its displacements on a straight path."""
     phys, bond, work, before = contact.phys, law.initial_state(), 0.0, 0.0
@@ -65,7 +69,7 @@ class CpmBonds(BondLog):
         self.between_looks = period
         self.between_quiet = period * SHARES if period > 1 else 1
         self.dissipated, self.by_slip = np.zeros(len(self.pairs)), np.zeros(len(self.pairs))
-        self.strains = None
+        self.slip_taken, self.strains = np.zeros(len(self.pairs)), None
         self.quiet, self.active, self.forces_before = [], [], {}
 
     @staticmethod
@@ -94,33 +98,27 @@ class CpmBonds(BondLog):
         for n in np.flatnonzero(self.status == INTACT).tolist():
             interaction = O.interactions[tuple(self.pairs[n].tolist())]
             phys = interaction.phys
-            self._quiet_turn(n)[n] = _Contact(interaction, interaction.geom, phys, phys.epsTPl, phys.shearForce)
+            _turn_of(n, self.quiet)[n] = _Contact(interaction, interaction.geom, phys, phys.epsTPl, phys.shearForce)
         if self.strains is not None:
             self._set_strains(*self.strains)
             self.strains = None
         self.separations = int(np.sum(self.status == SEPARATED))
         self._prepare()
 
-    def _quiet_turn(self, n):
-        return self.quiet[n % len(self.quiet)]
-
-    def _active_turn(self, n):
-        return self.active[n % len(self.active)]
-
     def _set_strains(self, omegas, totals, plastics):
         for n, omega, total, plastic in zip(sorted(self._intact()), omegas.tolist(), totals.tolist(),
                                             plastics.tolist()):
-            contact = self._quiet_turn(n)[n]
+            contact = _turn_of(n, self.quiet)[n]
             strain = contact.phys.epsT
             for k in range(3):
                 strain[k], contact.slipped[k] = total[k], plastic[k]
             if omega or any(plastic):
                 contact.phys.setDamage(omega)
-                self._keep(n, self._quiet_turn(n).pop(n))
+                self._keep(n, _turn_of(n, self.quiet).pop(n))
 
     def _keep(self, n, contact):
         """Remember the damage and slip of an active bond as they are now."""
-        self._active_turn(n)[n] = contact, contact.phys.omega, contact.slipped * 1.0
+        _turn_of(n, self.active)[n] = contact, contact.phys.omega, contact.slipped * 1.0
 
     def _prepare(self):
         """Keep the forces (N) of the bonds whose turn is in the next step."""
@@ -194,8 +192,8 @@ class CpmBonds(BondLog):
     def _separate(self, n):
         self.separations += self.status[n] != SEPARATED
         self.status[n] = SEPARATED
-        self._active_turn(n).pop(n, None)
-        self._quiet_turn(n).pop(n, None)
+        _turn_of(n, self.active).pop(n, None)
+        _turn_of(n, self.quiet).pop(n, None)
 
     def look_at_all(self):
         """Bring damage and status of all bonds up to date."""
@@ -223,8 +221,8 @@ class CpmBonds(BondLog):
         self._prepare()
 
     def _shift(self, n, shift):
-        turn = self._active_turn(n)
-        contact = turn[n][0] if n in turn else self._quiet_turn(n)[n]
+        turn = _turn_of(n, self.active)
+        contact = turn[n][0] if n in turn else _turn_of(n, self.quiet)[n]
         contact.phys.refPD += shift
         return contact.geom, contact.phys
 
@@ -252,14 +250,19 @@ class CpmBonds(BondLog):
             energy.append(0.5 * (phys.normalForce.squaredNorm() / kn + phys.shearForce.squaredNorm() / phys.ks))
         return math.fsum(energy)
 
+    def take_slip_work(self, particles):
+        work, self.slip_taken = 0.5 * (self.by_slip - self.slip_taken), self.by_slip.copy()
+        return np.bincount(self.pairs.ravel(), np.repeat(work, 2), particles)
+
     def state(self):
         bonds = [contact.phys for _, contact in sorted(self._intact().items())]
         return {**super().state(), "dissipated": self.dissipated.copy(), "by_slip": self.by_slip.copy(),
-                "omega": np.array([phys.omega for phys in bonds], float),
+                "slip_taken": self.slip_taken.copy(), "omega": np.array([phys.omega for phys in bonds], float),
                 "strain": np.array([phys.epsT for phys in bonds], float).reshape(-1, 3),
                 "plastic_strain": np.array([phys.epsTPl for phys in bonds], float).reshape(-1, 3)}
 
     def restore(self, state):
         super().restore(state)
         self.dissipated, self.by_slip = state["dissipated"].copy(), state["by_slip"].copy()
+        self.slip_taken = state["slip_taken"].copy()
         self.strains = state["omega"], state["strain"], state["plastic_strain"]

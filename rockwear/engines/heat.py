@@ -15,10 +15,11 @@ class Heat(Engine):
     """One HeatNetwork over rock particles (nodes 0..n-1) and the tool (n..n+m-1), staggered with the mechanics.
 
     Friction heat chi W, with the work W of irreversible slip, is shared between tool and rock [Rojek 2014, eqs. 36-41],
-    and in halves between rock particles. A piece of the tool (particle or facet) and a rock particle in contact
-    exchange h A (T_tool - T_rock) [Rojek 2014, eq. 66] during their contact time; A is the piece's contact area, but no
-    more than the rock particle is wide. It is the exact exchange of two lumps, which cannot overshoot. Convection acts
-    on the free surface [Rojek 2014, eq. 42], which is found anew every surface_period.
+    and in halves between rock particles, which slip in loose contacts or within their bonds. A piece of the tool
+    (particle or facet) and a rock particle in contact exchange h A (T_tool - T_rock) [Rojek 2014, eq. 66] during their
+    contact time; A is the piece's contact area, but no more than the rock particle is wide. It is the exact exchange of
+    two lumps, which cannot overshoot. Convection acts on the free surface [Rojek 2014, eq. 42], which is found anew
+    every surface_period.
 
     network: kernels.conduction.HeatNetwork; bonds, rock_friction, tool_contact: engines; rock: the specimen; body:
     model.thermal_body.ThermalBody of the tool;
@@ -85,7 +86,7 @@ class Heat(Engine):
     def _sources(self):
         """(n + m,) J that friction and the exchange between tool and rock bring since the last call."""
         tool_work, rock_work, touching = self.tool_contact.take_heating()
-        rock = (1 - self.tool_share) * rock_work + self.rock_friction.take_work()
+        rock = (1 - self.tool_share) * rock_work + self.rock_friction.take_work() + self.bonds.take_slip_work(self.n)
         tool_work = np.bincount(self.body.node_of, tool_work, self.body.count)
         heat = self.heat_fraction * np.concatenate([rock, self.tool_share * tool_work])
         self.load.friction_heat += heat[self.n:]

@@ -28,6 +28,14 @@ def test_a_softening_cut_closes_its_balance(tmp_path):
     assert abs(energy["residual"]) < 0.02 * energy["tool_work"]
 
 
+def test_slip_within_bonds_heats_the_rock(tmp_path):
+    run = tooth_cycles(tmp_path / "out", conduction="false", **SHORT)
+    assert run.code == 0, run.stderr
+    energy, heat = run.summary["balances"]["energy"], run.summary["balances"]["heat"]
+    friction = 0.85 * (energy["tool_friction"] + energy["rock_friction"])
+    assert 1.1 * friction < heat["generated"] < friction + 0.85 * energy["bond_breaking"]
+
+
 def test_a_tool_of_segments_cuts_softening_rock(tmp_path):
     run = tooth_cycles(tmp_path / "out", tool="segments", heat="false", **SHORT)
     assert run.code == 0, run.stderr

@@ -62,6 +62,12 @@ def test_looks_turn_the_slip_of_a_pair_that_rotates(checks):
         assert found[period]["force"] < error < 0.2 * missed and abs(found[period]["energy"]) < 1e-3
 
 
+def test_the_work_of_slip_goes_to_the_two_particles_in_halves(checks):
+    found = checks["slip by particle"]
+    assert found["halves"] == pytest.approx([0.5, 0.5], rel=1e-12) and found["left"] == 0
+    assert found["work"] == pytest.approx(found["exact"], rel=1e-4)
+
+
 def test_energy_of_a_free_pair_that_flies_apart(checks):
     for found in checks["flying"].values():
         assert found["broken"] == 1

@@ -384,6 +384,10 @@ class Softening(Tension):
         super().__init__()
         self.rock.laws = [self.law] * len(self.rock.pairs)
 
+    def event(self, last):
+        # As a heat engine does.
+        self.bonds.take_slip_work(self.rock.count)
+
     def _engines(self):
         bonds, *others = super()._engines()
         return [bonds, BondDashpots(rock=self.rock, bonds=bonds, ratio=0.05), *others]

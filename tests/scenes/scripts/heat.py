@@ -80,6 +80,9 @@ class Engines:
     def take_work(self):
         return np.zeros(2)
 
+    def take_slip_work(self, particles):
+        return np.zeros(particles)
+
     def find_contacts(self):
         pass
 

@@ -168,6 +168,14 @@ def work_until_gone(law):
             "modes": [found[0][1], found[1][1]], "missing": max(abs(rest) for *_, rest in found)}
 
 
+def slip_by_particle(law):
+    """What a slipping bond gives its two particles, over its work of slip; what is left for a second call (J)."""
+    bonds = drive_pair(law, np.zeros(400), np.column_stack([np.linspace(0.0, 40e-6, 400), np.zeros(400)])).bonds
+    halves, work, phys = bonds.take_slip_work(2), bonds.energy_released, O.interactions[0, 1].phys
+    return {"halves": (halves / work).tolist(), "work": work, "left": float(abs(bonds.take_slip_work(2)).max()),
+            "exact": law.Rt * (phys.epsT.norm() * phys.refLength - law.Rt / law.kt)}
+
+
 def flying_apart(law, period=1):
     """A free pair driven apart, turning and shearing: energy that is in no balance, over the energy released."""
     bonds = drive_pair(law, np.zeros(2), np.zeros(2), period=period).bonds
@@ -263,6 +271,7 @@ checks = {
     "swapping": {name: swapping(law) for name, law in LAWS.items()},
     "shear_rotation": {name: turning(law) for name, law in LAWS.items()},
     "turning in half the steps": {name: turning(law, 500) for name, law in LAWS.items()},
+    "slip by particle": slip_by_particle(LAWS["cohesive"]),
     "looks": {period: looked_at_now_and_then(LAWS["cohesive"], period) for period in (1, 10, 40)},
     "without realigning": without_realigning(LAWS["cohesive"]),
     "coulomb": {name: coulomb_afterwards(LAWS[name]) for name in LINEAR},
