@@ -18,7 +18,7 @@ from rockwear.scenes import cutting
 FINE = dict(width=0.044, height=0.022, radius_min=0.25e-3, radius_max=0.375e-3, bonding_gap=2.5e-5, kt=8e9,
             tooth_height=0.016, tooth_width=0.012, rake=10.0, clearance=10.0, tip_radius=1e-3, tool_radius_min=0.18e-3,
             tool_radius_max=0.24e-3, depth_of_cut=0.004, approach=2e-4, start_up=1.5e-4, cycles=0, heat=False)
-"""Rock of some 2500 discs."""
+"""Rock of 2747 discs."""
 
 
 def main():

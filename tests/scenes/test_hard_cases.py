@@ -60,15 +60,14 @@ def test_bonds_carried_in_cpp_keep_the_balance(checks):
     for found in checks["carried in C++"].values():
         for kind, torn in found.items():
             assert torn["finite"] and torn["broken"] > 0.15 and torn["kick"] < 1.1
-            assert abs(torn["residual"]) < {"torn in one step": 1e-5, "torn in a few steps": 0.01,
-                                            "crushed in finer steps": 0.003}.get(kind, 0.06)
+            assert abs(torn["residual"]) < {"torn in one step": 1e-5, "crushed in finer steps": 0.001}.get(kind, 0.01)
             assert torn["least crack"] > 0.25
         assert found["torn in one step"]["broken"] == found["torn in a few steps"]["broken"] == 1.0
 
 
 def test_looks_ten_steps_apart_miss_friction_alone(checks):
     found = checks["looks ten steps apart"]
-    assert abs(found["crushed"]["residual"]) < 0.06 and abs(found["sheared"]["residual"]) < 0.02
+    assert abs(found["crushed"]["residual"]) < 0.03 and abs(found["sheared"]["residual"]) < 0.02
     # Where nothing slips they miss nothing.
     assert abs(found["torn"]["residual"]) < 0.01
 
