@@ -18,7 +18,8 @@ ROCKS = {
     "p_sandstone": {"youngs_modulus": 18e9, "poissons_ratio": 0.18, "ucs": 60e6, "tensile_strength": 7e6,
                     "source": "[Rojek 2014, 5.1]"},
     "medium_sandstone": {"youngs_modulus": 13e9, "poissons_ratio": 0.25, "ucs": 50e6, "tensile_strength": 4.2e6,
-                         "fracture_toughness": 0.6e6, "source": "a medium sandstone, ours"}}
+                         "fracture_toughness": 0.6e6, "radius_min": 0.25e-3, "radius_max": 0.375e-3,
+                         "start": "medium_sandstone", "first_stage": "check", "source": "a medium sandstone, ours"}}
 """{name: options of calibration.fit}."""
 
 
