@@ -32,7 +32,7 @@ BOX, SMALL_BOX = dict(width=0.08, height=0.04), dict(width=0.06, height=0.03)
 """Loaded along their length; 650 and 330 discs of 1 to 1.5 mm, the smaller one for the finest discs' sake: 5,600."""
 SPEED, PULL = 0.04, 0.02
 """Of each platen, m/s."""
-SIZE, SMALL_SIZE = 0.08, 0.03
+SIZE, SMALL_SIZE = 0.08, 0.04
 """Of the toughness specimen, m."""
 
 LAWS = {
