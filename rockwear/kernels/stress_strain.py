@@ -11,14 +11,15 @@ cracks open along the load at 0.26 to 0.3 of the peak, and lateral strain then r
 def measured(*, stress, axial_strain, lateral_strain):
     """{name: (value, unit)} of a stress-strain curve: its peak, and E and nu as slopes in ELASTIC_RANGE.
 
-    stress: (n,) Pa; strains: (n,), all positive in the direction of the loading. nan where fewer than three rows are
-    in the range.
+    stress: (n,) Pa; strains: (n,), all positive in the direction of the loading. nan where there are fewer than three
+    rows from the last one below the range to the first one above it.
     """
     peak = int(np.argmax(stress))
     low, high = (part * stress[peak] for part in ELASTIC_RANGE)
-    # From the last row below the range to the first above it, so that a stray row counts for nothing.
+    # The first row above, and the last one below before it: stray rows elsewhere count for nothing.
     above = int(np.argmax(stress >= high))
-    rows = np.arange(np.flatnonzero(np.append(True, stress[:above] < low))[-1], above)
+    below = np.flatnonzero(np.append(True, stress[:above] < low))[-1] - 1
+    rows = np.arange(max(below, 0), above + 1)
     modulus = ratio = math.nan
     if len(rows) > 2:
         modulus = np.polyfit(axial_strain[rows], stress[rows], 1)[0]
