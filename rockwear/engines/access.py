@@ -26,6 +26,12 @@ def geometry_functor(kind):
     return next(functor for functor in functors if isinstance(functor, kind))
 
 
+def parameter_functor(kind):
+    """What makes the constants of contacts, of the type `kind`, in the scene that is in O now."""
+    functors = yade_engine(InteractionLoop).physDispatcher.functors
+    return next(functor for functor in functors if isinstance(functor, kind))
+
+
 def yade_friction_law():
     """The contact law that sums up plastic dissipation."""
     return law_functor(Law2_ScGeom_FrictViscoPhys_CundallStrackVisco)

@@ -31,6 +31,30 @@ class BondLog(Engine):
         self.status = np.full(len(self.pairs), INTACT, np.int8)
         self.cracks, self.broken, self.energy_released, self.clock = [], {}, 0.0, clock
 
+    def begin(self, there):
+        """Only these bonds (m,) bool are there at first; the others may be made later."""
+        self.status[~there] = SEPARATED
+
+    @abstractmethod
+    def bond(self, numbers):
+        """Give the new interactions of the bonds `numbers` (k,) their constants, after the step that made them."""
+
+    def renew(self, left, made):
+        """Rock has been replaced between two steps: the bonds `left` (k,) are gone, `made` (l,) have just been made."""
+        for n in left.tolist():
+            self._separate(n)
+        self.status[made] = INTACT
+        self.bond(made)
+        self._take_up(made)
+
+    @abstractmethod
+    def _separate(self, n):
+        """Forget the bond n."""
+
+    @abstractmethod
+    def _take_up(self, numbers):
+        """Follow these new bonds from now on."""
+
     @abstractmethod
     def _shift(self, n, shift):
         """Raise the reference overlap of bond n by `shift` (m). -> its geom and phys."""

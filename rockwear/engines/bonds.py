@@ -71,10 +71,9 @@ class Bonds(BondLog):
         """penetrationDepth (m) at which the bond was made."""
         return phys.initD
 
-    def bond(self):
-        """Give every new JCFpm interaction its stiffness and elastic domain (once, after the bonding step)."""
-        for n, ((i, j), law) in enumerate(zip(self.pairs.tolist(), self.laws)):
-            interaction = O.interactions[i, j]
+    def bond(self, numbers):
+        for n in numbers.tolist():
+            interaction, law = O.interactions[tuple(self.pairs[n].tolist())], self.laws[n]
             phys = interaction.phys
             # The label by which the C++ law tells what it broke.
             phys.crossSection = n + 1
@@ -108,6 +107,14 @@ class Bonds(BondLog):
                 elif n not in self.softening_bonds:
                     self.elastic[n] = interaction, interaction.phys
         self._read_counters()
+
+    def _take_up(self, numbers):
+        for n in numbers.tolist():
+            interaction = O.interactions[tuple(self.pairs[n].tolist())]
+            self.ends[n] = interaction.id1, interaction.id2
+            if n not in self.softening_bonds:
+                self.elastic[n] = interaction, interaction.phys
+        self.elastic = dict(sorted(self.elastic.items()))
 
     def _read_counters(self):
         self.counts = self.functor.nbTensCracks, self.functor.nbShearCracks

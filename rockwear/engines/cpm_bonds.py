@@ -77,10 +77,9 @@ class CpmBonds(BondLog):
         """penetrationDepth (m) at which the bond was made."""
         return phys.refPD
 
-    def bond(self):
-        """Give every new interaction the constants of its law (once, after the bonding step)."""
-        for (i, j), law in zip(self.pairs.tolist(), self.laws):
-            phys = O.interactions[i, j].phys
+    def bond(self, numbers):
+        for n in numbers.tolist():
+            phys, law = O.interactions[tuple(self.pairs[n].tolist())].phys, self.laws[n]
             length = phys.refLength
             phys.kn, phys.ks, phys.crossSection = law.kn, law.kt, 1.0
             phys.E, phys.G, phys.tanFrictionAngle = law.kn * length, law.kt * length, law.mu
@@ -95,15 +94,22 @@ class CpmBonds(BondLog):
         # By turn: {number: contact} and {number: (contact, omega and slipped part of the strain at the last look)}.
         self.quiet = [{} for _ in range(self.between_quiet)]
         self.active = [{} for _ in range(self.between_looks)]
-        for n in np.flatnonzero(self.status == INTACT).tolist():
-            interaction = O.interactions[tuple(self.pairs[n].tolist())]
-            phys = interaction.phys
-            _turn_of(n, self.quiet)[n] = _Contact(interaction, interaction.geom, phys, phys.epsTPl, phys.shearForce)
+        self._follow(np.flatnonzero(self.status == INTACT))
         if self.strains is not None:
             self._set_strains(*self.strains)
             self.strains = None
         self.separations = int(np.sum(self.status == SEPARATED))
         self._prepare()
+
+    def _take_up(self, numbers):
+        self.dissipated[numbers] = self.by_slip[numbers] = 0.0
+        self._follow(numbers)
+
+    def _follow(self, numbers):
+        for n in numbers.tolist():
+            interaction = O.interactions[tuple(self.pairs[n].tolist())]
+            phys = interaction.phys
+            _turn_of(n, self.quiet)[n] = _Contact(interaction, interaction.geom, phys, phys.epsTPl, phys.shearForce)
 
     def _set_strains(self, omegas, totals, plastics):
         for n, omega, total, plastic in zip(sorted(self._intact()), omegas.tolist(), totals.tolist(),

@@ -104,7 +104,7 @@ def contacts(positions, radii, gap_max=0.0, period=None):
     positions, radii = np.asarray(positions, dtype=float), np.asarray(radii, dtype=float)
     found = [np.empty((0, 2), dtype=np.intp)]
     if len(radii):
-        wrapped = positions if period is None else _wrap(positions, period)
+        wrapped = wrap(positions, period)
         size = np.floor(np.log2(radii / radii.min()))
         classes = [np.flatnonzero(size == c) for c in np.unique(size)]
         trees = [cKDTree(wrapped[ids], boxsize=period) for ids in classes]
@@ -123,8 +123,10 @@ def contacts(positions, radii, gap_max=0.0, period=None):
     return pairs[np.lexsort((pairs[:, 1], pairs[:, 0]))]
 
 
-def _wrap(positions, period):
-    """Positions mapped into [0, period) where it is not 0."""
+def wrap(positions, period):
+    """Positions (n, d) mapped into [0, period) where `period` (d,) is not 0; as they are without one."""
+    if period is None:
+        return positions
     inside = np.where(period > 0, np.mod(positions, np.where(period > 0, period, 1.0)), positions)
     # the remainder of a tiny negative number rounds to the period itself
     return np.where((period > 0) & (inside >= period), 0.0, inside)
@@ -273,8 +275,7 @@ def _relax(container, positions, radii, tolerance=FORCE_TOLERANCE):
     x = _minimise(energy, (positions / unit).ravel(), tolerance)
     _, gradient = energy(x)
     relaxed = x.reshape(positions.shape) * unit
-    if container.period is not None:
-        relaxed = _wrap(relaxed, container.period)
+    relaxed = wrap(relaxed, container.period)
     unbalanced = np.linalg.norm(gradient.reshape(positions.shape), axis=1).sum()
     return relaxed, float(unbalanced / energy.contact_force) if energy.contact_force else math.inf
 

@@ -232,6 +232,20 @@ def tip(vertices):
     return np.array([x[y < y.min() + 1e-6 * np.ptp(y)].max(), y.min()])
 
 
+def reach(polygon, heights):
+    """Largest x (m) of a polygon (k, 2) m at each of the heights y (any shape, m), -inf where it has none."""
+    heights = np.asarray(heights, float)
+    found = np.full(heights.shape, -np.inf)
+    for (x, y), (dx, dy) in zip(polygon, np.roll(polygon, -1, axis=0) - polygon):
+        if dy == 0.0:
+            at, inside_edge = np.full(heights.shape, max(x, x + dx)), heights == y
+        else:
+            part = (heights - y) / dy
+            at, inside_edge = x + part * dx, (part >= 0) & (part <= 1)
+        found = np.where(inside_edge, np.maximum(found, at), found)
+    return found
+
+
 def nearest_arc(points, along, arc):
     """(m,) m, arc length of the contour point nearest to each point (m, 2) m; along, arc: from `contour`."""
     return arc[cKDTree(along).query(points)[1]]

@@ -88,6 +88,34 @@ def cells(positions, *, box=None, polygon=None):
     return _measure(points, owner, side, far, n)
 
 
+def periodic_cells(positions, *, period, height):
+    """Voronoi cells of particles in the plane that repeat themselves along x with `period` (m), between walls at y = 0
+    and y = height (m), as Cells; an edge may join a particle with the image of its neighbour, and each pair is there
+    once.
+
+    positions (n, 2) m, 0 <= x < period. Raises ParameterError.
+    """
+    n = len(positions)
+    reach = 2 * REACH * float(cKDTree(positions).query(positions, 2)[0][:, 1].max())
+    before, after = (np.flatnonzero(near) for near in (positions[:, 0] > period - reach, positions[:, 0] < reach))
+    shift = np.array([period, 0.0])
+    spread = np.vstack([positions, positions[before] - shift, positions[after] + shift]) + [reach, 0.0]
+    number = np.concatenate([np.arange(n), before, after])
+    found = cells(spread + [1e-9 * period, 0.0], box=(period + 2 * reach + 2e-9 * period, height))
+    own = found.edges < n
+    # A face at the seam is found twice, from either side: that of the lower number of the two counts.
+    kept = own.all(axis=1) | (own.any(axis=1) & (np.where(own[:, 0], found.edges[:, 0], found.edges[:, 1])
+                                                 < number[np.where(own[:, 0], found.edges[:, 1], found.edges[:, 0])]))
+    edges = np.sort(number[found.edges[kept]], axis=1)
+    order = _sorted(edges)
+    walls = {}
+    for side in (2, 3):
+        nodes, areas, away = found.walls[side]
+        walls[side] = nodes[nodes < n], areas[nodes < n], away[nodes < n]
+    return Cells(edges=edges[order], faces=found.faces[kept][order], distances=found.distances[kept][order],
+                 volumes=found.volumes[:n], walls=walls)
+
+
 def _measure(points, owner, side, far, n):
     diagram = Voronoi(np.vstack([points, far]))
     pairs = np.sort(diagram.ridge_points, axis=1)

@@ -62,6 +62,8 @@ class RockAssembly:
 
     laws = grains = None
     """(m,) law of each bond; (n,) number of the grain of each particle, where the rock has grains."""
+    period = None
+    """(2,) m with which the rock repeats itself along x, None where it does not."""
 
     def __init__(self, *, positions, radii, width, height, density, pairs, scale=None, depth=None, porosity=None):
         self.positions, self.radii, self.density = np.asarray(positions, float), radii, density
@@ -100,6 +102,30 @@ class RockAssembly:
         return float(self.masses.sum()) / self.density
 
     @property
+    def places(self):
+        """(n, d) m of the particles as the scene begins."""
+        return self.positions
+
+    @property
+    def bonded(self):
+        """(m,) bool: pairs that are bonded as the scene begins."""
+        return np.ones(len(self.pairs), bool)
+
+    @property
+    def anchored(self):
+        """(n,) bool: particles that hold what is rock and no chip."""
+        return self.fixed
+
+    @property
+    def bond_lengths(self):
+        """(m,) m between the centres of each pair."""
+        return np.linalg.norm(packing.separation(self.positions, *self.pairs.T, self.period), axis=1)
+
+    def layouts(self):
+        """(positions (n, d) m, bonds (m,) bool) that show all bonds between neighbours as they lie."""
+        return [(self.positions, np.ones(len(self.pairs), bool))]
+
+    @property
     def strength_factor(self):
         """(m,) A bond between enlarged particles is so many times as strong: the rock's strength stays uniform."""
         return self.scale[self.pairs].mean(axis=1)
@@ -119,8 +145,7 @@ class RockAssembly:
         it, each with half of its bonds, and over all only where fewer than INSIDE are so far.
         """
         i, j = self.pairs.T
-        lengths = np.linalg.norm(self.positions[i] - self.positions[j], axis=1)
-        halves = 0.5 * np.bincount(np.concatenate([i, j]), np.tile(lengths, 2), self.count)
+        halves = 0.5 * np.bincount(np.concatenate([i, j]), np.tile(self.bond_lengths, 2), self.count)
         depth = np.min(0.5 * np.array(self.size) - abs(self.positions - self.centre), axis=1)
         inside = (self.side == 0) & (depth > BORDER * self.scale * np.mean(self.radii / self.scale))
         if np.count_nonzero(inside) < INSIDE:
@@ -146,7 +171,7 @@ class RockAssembly:
             sizes = sizes * np.clip(drawn / math.gamma(1 + 1 / weibull_modulus), *SCATTER_LIMITS)
         within = np.zeros(len(self.pairs), bool)
         if grain_edge:
-            self.grains = grains(self.positions, volume=self.volume, edge=grain_edge, seed=seed)
+            self.grains = grains(self.positions, volume=self.volume, edge=grain_edge, seed=seed, period=self.period)
             within = self.grains[self.pairs[:, 0]] == self.grains[self.pairs[:, 1]]
             require(law.linear, "grain_edge", grain_edge, f"0 with the law {law.name}, which is linear nowhere", "m")
             kn, kt = within_grains or (law.kn, law.kt)
@@ -160,7 +185,7 @@ class RockAssembly:
         """Reduce radii until no bonded particles overlap; masses stay. YADE's concrete model erases a bond that breaks,
         and the contact that follows would press with the whole overlap."""
         i, j = self.pairs.T
-        overlap = self.radii[i] + self.radii[j] - np.linalg.norm(self.positions[i] - self.positions[j], axis=1)
+        overlap = self.radii[i] + self.radii[j] - self.bond_lengths
         largest = np.zeros(self.count)
         np.maximum.at(largest, i, overlap)
         np.maximum.at(largest, j, overlap)
@@ -212,8 +237,7 @@ class RockAssembly:
         if not len(self.pairs):
             return {"particles": (self.count, "-"), "porosity": (self.porosity, "-")}
         i, j = self.pairs.T
-        distance = np.linalg.norm(self.positions[i] - self.positions[j], axis=1)
-        overlap = np.clip(1 - distance / (self.radii[i] + self.radii[j]), 0, None)
+        overlap = np.clip(1 - self.bond_lengths / (self.radii[i] + self.radii[j]), 0, None)
         return {"particles": (self.count, "-"), "bonds": (len(self.pairs), "-"), "porosity": (self.porosity, "-"),
                 "coordination": (2 * len(self.pairs) / self.count, "-"),
                 "mean_overlap": (float(overlap.mean()), "of a diameter")}

@@ -204,6 +204,25 @@ class Cut(Scene):
         if self.damping and rates:
             self.damping.rate = rates[min(self.stage, len(rates) - 1)]
 
+    def close_books(self):
+        """Rock is about to be replaced: what it stores now is what it has gained."""
+        if self.heat:
+            self.heat.act()
+        self.energy.close()
+
+    def open_books(self, numbers):
+        """The particles `numbers` (k,) are untouched rock now."""
+        if self.damping:
+            self.damping.connect()
+        if self.heat:
+            temperature = self.heat.network.temperature[:self.rock.count].copy()
+            temperature[numbers] = self.heat_model.rock_temperature
+            self.heat.replace_rock(temperature)
+        self.canonical()
+        if self.heat and self.heat.conduction:
+            self.heat.find_surfaces()
+        self.energy.begin()
+
     # ---- what a checkpoint holds
 
     def state(self):

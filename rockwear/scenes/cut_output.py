@@ -69,7 +69,7 @@ class CutOutput(Output):
         size = {"box": np.array([rock.width, rock.height])} if scene.in_plane else {
             "block": np.array([rock.width, rock.height, rock.depth])}
         heat = {"thermal_positions": scene.tool.thermal_body.positions} if scene.heat else {}
-        return {"rock_radii": rock.radii, "rock_fixed": rock.fixed, "bonds": rock.pairs, "outline": scene.tool.outline,
+        return {"rock_radii": rock.radii, "rock_fixed": rock.anchored, "bonds": rock.pairs, "outline": scene.tool.outline,
                 **size, **heat, **scene.tool.model_arrays(), **scene.programme.arrays}
 
     def snapshot(self):
@@ -80,7 +80,8 @@ class CutOutput(Output):
         heat = {"temperature": scene.heat.network.temperature,
                 "thermal_alive": scene.tool.thermal_body.alive} if scene.heat else {"temperature": np.empty(0)}
         return {"time": scene.time, "stage": scene.stage, "rock_positions": access.rock_positions(rock),
-                "broken_bonds": np.bincount(rock.pairs[scene.bonds.status != 0].ravel(), minlength=rock.count),
+                "broken_bonds": np.bincount(rock.pairs[(scene.bonds.status != 0) & rock.bonded].ravel(),
+                                            minlength=rock.count),
                 "status": scene.bonds.status, "tool_offset": pose.offset, "tool_turn": pose.turn,
                 **heat, **scene.tool.snapshot()}
 

@@ -60,6 +60,12 @@ class Scene(ABC):
             engine.last_iteration = O.iter - 1
             engine.connect()
 
+    def skip_step(self):
+        """A step of no length has been made, which no clock counts."""
+        self.first_iteration += 1
+        for engine in self.engines:
+            engine.last_iteration += 1
+
     # ---- stages
 
     @property

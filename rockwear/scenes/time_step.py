@@ -15,11 +15,14 @@ TOUCHING = 4
 def plane_steps(rock, contact, bond_damping=0.0):
     """(critical step of the bonded rock, of rock under the tool), s. contact: model.contact.ContactLaw; bond_damping:
     of the critical damping of bonds."""
-    kn, kt = rock.stiffness()
-    cn, ct = coefficients(rock, bond_damping)
-    common = dict(positions=rock.positions, radii=rock.radii, masses=rock.masses, inertias=rock.inertias,
-                  bonds=rock.pairs,
-                  kn=kn, kt=kt, cn=cn, ct=ct, fixed=np.flatnonzero(rock.fixed))
+    return tuple(map(min, zip(*(_plane_steps(rock, contact, bond_damping, *layout) for layout in rock.layouts()))))
+
+
+def _plane_steps(rock, contact, bond_damping, positions, shown):
+    (kn, kt), (cn, ct) = rock.stiffness(), coefficients(rock, bond_damping)
+    common = dict(positions=positions, radii=rock.radii, masses=rock.masses, inertias=rock.inertias,
+                  bonds=rock.pairs[shown], kn=kn[shown], kt=kt[shown], cn=cn[shown], ct=ct[shown],
+                  fixed=np.flatnonzero(rock.fixed))
     bonded = critical_time_step(**common)
     # Any free disc may be the one that the tool presses, from any side, with two of its particles at once.
     free = np.flatnonzero(~rock.fixed)

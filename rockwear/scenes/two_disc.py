@@ -79,7 +79,7 @@ def drive_pair(law, un, ut, *, radii=(1.25e-3, 1.25e-3), axes=None, spin=(0.0, 0
     utils.createInteraction(0, 1)
     O.dt = 0.0
     O.step()
-    bonds.bond()
+    bonds.bond(np.array([0]))
     O.dt = TIME_STEP
     first, second = (1, 0) if swapped else (0, 1)
     driver = PairDriver(un=un, ut=ut, first=first, second=second, axes=axes, spin=Vector3(*spin), bonds=bonds)

@@ -1,6 +1,7 @@
 """Building blocks of scenes: what is put into YADE, and how."""
 import math
 
+import numpy as np
 from yade import (
     Bo1_Facet_Aabb, Bo1_Sphere_Aabb, CpmMat, ForceResetter, FrictMat, FrictViscoMat, Ig2_Facet_Sphere_ScGeom,
     Ig2_Sphere_Sphere_ScGeom, InsertionSortCollider, InteractionLoop, Ip2_CpmMat_CpmMat_CpmPhys,
@@ -10,6 +11,7 @@ from yade import (
     Law2_ScGeom_FrictViscoPhys_CundallStrackVisco, Law2_ScGeom_JCFpmPhys_JointedCohesiveFrictionalPM,
     Law2_ScGeom_ViscElPhys_Basic, MatchMaker, NewtonIntegrator, O, log, utils)
 
+from rockwear.engines import access
 from rockwear.engines.bonds import Bonds
 from rockwear.engines.cpm_bonds import CpmBonds
 
@@ -22,6 +24,10 @@ ROCK_MASK, TOOL_MASK = 13, 15
 """Bodies meet where masks share a bit; bit 2 is avoided within the tool."""
 SIDE_MASKS = ROCK_MASK, 4, 8
 """Of rock by its side of a cut: none, and the two that do not meet."""
+
+
+BONDING = 1, 2
+"""Steps before which contacts of bonding rock are bonds: JCFpm's, CPM's."""
 
 
 def exactly(value):
@@ -57,7 +63,7 @@ def put_tool_material(*, mu, contact_damping):
 
 def put_rock(rock):
     """The specimen's particles as bodies 0..n-1, its fixed ones without degrees of freedom."""
-    columns = (rock.positions.tolist(), rock.radii.tolist(), rock.masses.tolist(), rock.inertias.tolist(), rock.fixed,
+    columns = (rock.places.tolist(), rock.radii.tolist(), rock.masses.tolist(), rock.inertias.tolist(), rock.fixed,
                rock.side.tolist())
     for position, radius, mass, inertia, fixed, side in zip(*columns):
         particle = finite_disc if len(position) == 2 else sphere
@@ -109,8 +115,8 @@ def put_loop_with_facets(*, rock, tool, damping=0.0, ratcheting_free=True):
 def bond_loop(geometry, parameters=(), laws=()):
     """InteractionLoop for bonds of either YADE law and for supports of a boundary, beside other contacts."""
     return InteractionLoop(
-        geometry, [Ip2_JCFpmMat_JCFpmMat_JCFpmPhys(cohesiveTresholdIteration=1),
-                   Ip2_CpmMat_CpmMat_CpmPhys(cohesiveThresholdIter=2), Ip2_ViscElMat_ViscElMat_ViscElPhys(),
+        geometry, [Ip2_JCFpmMat_JCFpmMat_JCFpmPhys(cohesiveTresholdIteration=BONDING[0]),
+                   Ip2_CpmMat_CpmMat_CpmPhys(cohesiveThresholdIter=BONDING[1]), Ip2_ViscElMat_ViscElMat_ViscElPhys(),
                    *parameters],
         [Law2_ScGeom_JCFpmPhys_JointedCohesiveFrictionalPM(neverErase=True), Law2_ScGeom_CpmPhys_Cpm(),
          Law2_ScGeom_ViscElPhys_Basic(), *laws])
@@ -131,14 +137,36 @@ def bonds_engine(rock, law, clock):
 
 def make_bonds(rock, bonds):
     """Bond the pairs of the specimen, stress-free as they lie (one step of no length), and end the bonding."""
-    for i, j in rock.pairs.tolist():
+    bonds.begin(rock.bonded)
+    for i, j in rock.pairs[rock.bonded].tolist():
         utils.createInteraction(i, j)
     O.dt = 0.0
     O.step()
-    bonds.bond()
+    bonds.bond(np.flatnonzero(rock.bonded))
     loose = O.materials["loose rock"]
     for i in range(rock.count):
         O.bodies[i].mat = loose
+
+
+def bond_again(rock, numbers):
+    """Bond these pairs (k,) of the rock in a scene that runs, stress-free as they lie: one step of no length, in which
+    nothing moves and no engine of ours is called."""
+    ends = np.unique(rock.pairs[numbers]).tolist()
+    bonding, loose = O.materials["bonding rock"], O.materials["loose rock"]
+    interactions, time_step, engines = access.yade_engine(InteractionLoop), O.dt, O.engines
+    cohesive = [access.parameter_functor(Ip2_JCFpmMat_JCFpmMat_JCFpmPhys),
+                access.parameter_functor(Ip2_CpmMat_CpmMat_CpmPhys)]
+    for body in ends:
+        O.bodies[body].mat = bonding
+    cohesive[0].cohesiveTresholdIteration = cohesive[1].cohesiveThresholdIter = -1
+    for i, j in rock.pairs[numbers].tolist():
+        utils.createInteraction(i, j)
+    cohesive[0].cohesiveTresholdIteration, cohesive[1].cohesiveThresholdIter = BONDING
+    O.engines, O.dt = [ForceResetter(), interactions], 0.0
+    O.step()
+    O.engines, O.dt = engines, time_step
+    for body in ends:
+        O.bodies[body].mat = loose
 
 
 def finite_disc(position, radius, *, material, mask, mass, inertia):

@@ -1,0 +1,137 @@
+"""A rock mass: rock that has no end along the cut, of which a window that moves with the tool is simulated."""
+from functools import cached_property
+
+import numpy as np
+
+from rockwear.kernels import packing
+from rockwear.kernels.checks import not_negative, positive, require, within
+from rockwear.kernels.voronoi import periodic_cells
+from rockwear.model.cache import cached
+from rockwear.model.rock import RockAssembly, graded_radius
+
+SLABS = 16
+"""Parts of the window that leave it and enter it as one."""
+PARKED = 3.0
+"""Particles that are not in the rock yet stand so many heights of the window below it, and their largest diameters
+apart."""
+
+
+class RockMass(RockAssembly):
+    """Discs of a packing that repeats itself along x with the length of the window, 1 m thick.
+
+    A particle keeps its number and its `positions` in the period, 0 <= x < width; `laps` (n,) counts how many periods
+    further on it stands in the rock: its place is x + lap width. The window holds each particle once. It moves by slabs:
+    the slab that lies furthest behind leaves it, and goes in again ahead as untouched rock, with a lap more. `crossing`
+    (m,): periods from the first particle of a bond to the image of the second that it is bonded with; the bond is there
+    while their laps differ by that. `absent` (n,) bool: particles that the groove, in which the tool begins, leaves out.
+
+    width, height: m of the window; others as of a Specimen. Raises ParameterError naming the parameter.
+    """
+
+    def __init__(self, *, width, height, radius_min, radius_max, porosity, seed, bonding_gap, grading_factor=1.0,
+                 fine_depth=0.035, density):
+        positive("width", width, "m"), positive("height", height, "m"), positive("fine_depth", fine_depth, "m")
+        not_negative("bonding_gap", bonding_gap, "m"), within("grading_factor", grading_factor, 1, 8)
+        require(bonding_gap <= radius_min, "bonding_gap", bonding_gap,
+                f"at most radius_min = {radius_min:g}: bonds join neighbours", "m")
+        key = dict(box=[width, height], radius_min=radius_min, radius_max=radius_max, porosity=porosity, seed=seed,
+                   grading_factor=grading_factor, fine_depth=fine_depth, periodic=[True, False])
+
+        def make():
+            field = graded_radius(top=height, fine_depth=fine_depth, grading_factor=grading_factor, over=fine_depth)
+            made = packing.pack(box=(width, height), radius_min=radius_min, radius_max=radius_max, porosity=porosity,
+                                seed=seed, radius_scale=field if grading_factor > 1 else None, periodic=(True, False))
+            return {"positions": made.positions, "radii": made.radii, "scale": made.scale}
+
+        stored = cached(make, **key)
+        self.period = np.array([width, 0.0])
+        pairs = packing.contacts(stored["positions"], stored["radii"], bonding_gap, self.period)
+        require(len(pairs) > len(stored["radii"]), "bonding_gap", bonding_gap, "large enough to bond the packing", "m")
+        super().__init__(positions=stored["positions"], radii=stored["radii"], width=width, height=height,
+                         density=density, pairs=pairs, scale=stored["scale"])
+        i, j = pairs.T
+        x = self.positions[:, 0]
+        self.crossing = np.rint((x[i] - x[j]) / width).astype(int)
+        self.slab = np.minimum((x / self.slab_length).astype(int), SLABS - 1)
+        self.laps, self.absent = np.zeros(self.count, int), np.zeros(self.count, bool)
+        self.passed = 0
+        """Slabs that have left the window."""
+
+    @property
+    def slab_length(self):
+        """m of a slab."""
+        return self.width / SLABS
+
+    @property
+    def begin(self):
+        """x (m) of the window's left end."""
+        return self.passed * self.slab_length
+
+    @property
+    def end(self):
+        """x (m) of the window's right end."""
+        return self.begin + self.width
+
+    @property
+    def places(self):
+        """(n, 2) m of the particles in untouched rock; absent ones stand aside."""
+        places = self.positions + self.laps[:, None] * self.period
+        aside = np.flatnonzero(self.absent)
+        spacing = 2.5 * float(self.radii.max())
+        columns = max(1, int(self.width / spacing))
+        row, column = np.divmod(np.arange(len(aside)), columns)
+        places[aside] = np.column_stack([column * spacing, -PARKED * self.height - row * spacing])
+        return places
+
+    @property
+    def bonded(self):
+        """(m,) bool: bonds that the window's rock has while nothing has broken it."""
+        i, j = self.pairs.T
+        return (self.laps[j] - self.laps[i] == self.crossing) & ~self.absent[self.pairs].any(axis=1)
+
+    @property
+    def anchored(self):
+        """(n,) bool: particles at the bottom, which hold what is rock and no chip."""
+        return self.positions[:, 1] < 1.05 * self.radii
+
+    def at_ends(self):
+        """(numbers of the particles at the left end, those at the right end) of the window now."""
+        x = self.positions[:, 0] + self.laps * self.width
+        here = ~self.absent
+        return (np.flatnonzero(here & (x - self.begin < 1.05 * self.radii)),
+                np.flatnonzero(here & (self.end - x < 1.05 * self.radii)))
+
+    def leave_out(self, gone):
+        """Particles (n,) bool that are not there at first."""
+        self.absent = np.asarray(gone, bool).copy()
+
+    def advance(self):
+        """Move the window by a slab. -> numbers (k,) of the particles that left it behind and entered it ahead."""
+        moved = np.flatnonzero(self.slab == self.passed % SLABS)
+        self.laps[moved] += 1
+        self.absent[moved] = False
+        self.passed += 1
+        return moved
+
+    def layouts(self):
+        """(positions (n, 2) m, bonds (m,) bool) pairs that show every bond at least once between neighbours as they
+        lie."""
+        i, j = self.pairs.T
+        rolled = self.positions.copy()
+        rolled[:, 0] = (rolled[:, 0] + 0.5 * self.width) % self.width
+        within_one = abs(rolled[i, 0] - rolled[j, 0]) < 0.5 * self.width
+        return [(self.positions, self.crossing == 0), (rolled, within_one)]
+
+    @cached_property
+    def cells(self):
+        """kernels.voronoi.Cells: the part of the period that each particle stands for."""
+        return periodic_cells(self.positions, period=self.width, height=self.height)
+
+    def state(self):
+        """What a restart needs."""
+        return {"laps": self.laps.copy(), "absent": self.absent.copy(), "passed": self.passed}
+
+    def restore(self, state):
+        """Take back what `state` gave."""
+        self.laps, self.absent = state["laps"].astype(int), state["absent"].astype(bool)
+        self.passed = int(state["passed"])

@@ -1,0 +1,150 @@
+"""The steady cut: a tool on a straight way through a rock mass without end, of which a window moves along with it."""
+from types import SimpleNamespace
+
+import numpy as np
+from yade import O
+
+from rockwear.kernels.checks import require
+from rockwear.kernels.parameter import Group, Parameter, above_zero, choice, number
+from rockwear.kernels.polygon import reach
+from rockwear.kernels.rigid_motion import Straight
+from rockwear.model.rock_mass import SLABS, RockMass
+from rockwear.scenes import parameters, parts
+from rockwear.scenes.cut import Cut
+from rockwear.scenes.programme import Programme
+from rockwear.scenes.rock_window import FixedBoundary, RockWindow
+
+LEAST_SPEED = 0.05
+"""Part of the cutting velocity with which the ramp of speed begins."""
+BOUNDARIES = "fixed", "free"
+
+WINDOW = Group("rock", (
+    Parameter("window_behind", 0.03, "m", above_zero, "length of the window behind the tip"),
+    Parameter("window_ahead", 0.06, "m", above_zero, "length of the window ahead of the tip"),
+    Parameter("window_height", 0.04, "m", above_zero, "height of the window"),
+    Parameter("boundary", BOUNDARIES[0], "", choice(*BOUNDARIES), "of the window below the rock's surface; free: only "
+              "the bottom is held"),
+    *(p for p in parameters.SPECIMEN.parameters if p.name not in ("width", "height"))))
+STEADY = Group("motion", (
+    *(p for p in parameters.CUT_MOTION if p.name != "approach"),
+    Parameter("cut_length", 0.1, "m", above_zero, "way of the tool"),
+    Parameter("ramp_length", 5e-3, "m", number(0), "way on which the tool comes to its velocity, from a groove that "
+              "fits it"),
+    parameters.DAMPING, *parameters.OTHER_DAMPING))
+GROUPS = [WINDOW, parameters.BONDS, parameters.PLANE_TOOL, parameters.CONTACT, STEADY, parameters.WEAR,
+          parameters.HEAT, parameters.ACCURACY]
+
+
+def groups(**defaults):
+    """The scene's parameter groups with other defaults."""
+    return parameters.with_defaults(GROUPS, **defaults)
+
+
+def make(values):
+    """The scene of {name: value} of all parameters. Raises ParameterError."""
+    v = SimpleNamespace(**values)
+    parts.check_radii(v)
+    check_window(v)
+    outline = parts.outline(v)
+    require(np.ptp(outline[:, 1]) > v.depth_of_cut, "tooth_height", float(np.ptp(outline[:, 1])),
+            f"more than depth_of_cut = {v.depth_of_cut:g}", "m")
+    tool = parts.plane_tool(v, outline)
+    # The rock takes longest to pack: all else is refused before.
+    rock = RockMass(width=v.window_behind + v.window_ahead, height=v.window_height, radius_min=v.radius_min,
+                    radius_max=v.radius_max, porosity=v.porosity, seed=v.seed, bonding_gap=v.bonding_gap,
+                    grading_factor=v.grading_factor, fine_depth=v.fine_depth, density=v.rock_density)
+    path = v.window_height - v.depth_of_cut
+    rock.leave_out(above_groove(rock, outline + [v.window_behind, path], path))
+    programme = SteadyCut(
+        velocity=v.velocity * v.time_scale, cut_length=v.cut_length, ramp_length=v.ramp_length,
+        start=(v.window_behind, path), depth_of_cut=v.depth_of_cut,
+        window=RockWindow(rock=rock, behind=v.window_behind, sides=v.boundary != "free"))
+    return Cut(tool=tool, programme=programme, rock=parts.bond(rock, v), time_scale=v.time_scale,
+               background_damping=v.background_damping, **parts.common(v))
+
+
+def check_window(v):
+    """Raise ParameterError for a window in which there is no room for the cut."""
+    require(2 * v.radius_max < v.depth_of_cut < 0.5 * v.window_height, "depth_of_cut", v.depth_of_cut,
+            f"more than a rock particle, {2 * v.radius_max:g}, and less than half of window_height = "
+            f"{v.window_height:g}", "m")
+    require(v.window_ahead >= 4 * v.depth_of_cut, "window_ahead", v.window_ahead,
+            f"at least four times depth_of_cut = {v.depth_of_cut:g}: chips are as long", "m")
+    require(v.window_behind >= 2 * v.depth_of_cut, "window_behind", v.window_behind,
+            f"at least twice depth_of_cut = {v.depth_of_cut:g}", "m")
+    slab = (v.window_behind + v.window_ahead) / SLABS
+    require(slab >= 2 * v.radius_max, "radius_max", v.radius_max,
+            f"at most {slab / 2:g}: half of a slab of the window", "m")
+    require(v.cut_length > v.ramp_length, "cut_length", v.cut_length, f"more than ramp_length = {v.ramp_length:g}", "m")
+
+
+def above_groove(rock, outline, path):
+    """(n,) bool: particles of the rock that reach above the way of the tool at y = `path` (m) behind its front.
+
+    outline: (k, 2) m, the tool where it begins.
+    """
+    (x, y), r = rock.positions.T, rock.radii
+    heights = np.linspace(-1.0, 1.0, 9)[:, None] * r + y
+    front = np.where(heights > path, reach(outline, np.maximum(heights, path)), -np.inf).max(axis=0)
+    return (y + r > path) & (x - r < front)
+
+
+class SteadyCut(Programme):
+    """A tool that comes up to its velocity in a groove that fits it and then cuts on at a constant depth.
+
+    velocity: m/s of the mechanics; cut_length, ramp_length: m; start: (2,) m, where the tool's origin begins; window:
+    RockWindow.
+    """
+
+    def __init__(self, *, velocity, cut_length, ramp_length, start, depth_of_cut, window):
+        super().__init__(Straight(start=start, velocity=(velocity, 0.0)), {"stage_names": np.array(["cut"])})
+        self.velocity, self.cut_length, self.ramp_length, self.window = velocity, cut_length, ramp_length, window
+        self.depth_of_cut = depth_of_cut
+        self.way, self.speed, self.since = 0.0, 0.0, 0
+
+    def stages(self):
+        return {"cut": (self.cut_length + self.ramp_length) / self.velocity / self.scene.time_scale}
+
+    def begin(self):
+        super().begin()
+        self.since = O.iter
+        self.window.begin(self.scene, FixedBoundary())
+
+    @property
+    def distance(self):
+        """m that the tool has gone."""
+        return self.way + self.speed * (O.iter - self.since) * self.scene.time_step
+
+    def run(self):
+        self.way, self.since = self.distance, O.iter
+        self.window.follow(self.motion.start[0] + self.way)
+        self.since = O.iter
+        ramp = 2 * self.ramp_length / self.velocity
+        reached = (self.step + 0.5 * self.scene.chunk) * self.scene.time_step
+        speed = self.velocity * (min(1.0, max(LEAST_SPEED, reached / ramp)) if ramp else 1.0)
+        if speed != self.speed:
+            self.speed = speed
+            self.scene.tool.bodies.go_on((speed, 0.0))
+        return False
+
+    def log(self):
+        return {"distance": (self.distance, "m")}
+
+    def results(self, columns):
+        if not columns:
+            return {}
+        unit = self.scene.units.force
+        steady = columns["distance"] > self.ramp_length
+        found = {f"mean_{name}": (float(columns[name][steady].mean()), unit) for name in ("cutting_force",
+                                                                                         "thrust_force")}
+        return {**found, "peak_cutting_force": (float(columns["cutting_force"].max()), unit),
+                "specific_energy": (found["mean_cutting_force"][0] / self.depth_of_cut, "J/m3")}
+
+    def state(self):
+        return {**super().state(), "window": self.window.state(), "way": self.way, "speed": self.speed,
+                "since": self.since}
+
+    def restore(self, state):
+        super().restore(state)
+        self.way, self.speed, self.since = float(state["way"]), float(state["speed"]), int(state["since"])
+        self.window.restore(state["window"], self.scene, FixedBoundary())
