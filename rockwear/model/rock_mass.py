@@ -11,6 +11,9 @@ from rockwear.model.rock import RockAssembly, graded_radius
 
 SLABS = 16
 """Parts of the window that leave it and enter it as one."""
+MISFIT = 5e-3
+"""Parts of the sum of two radii by which their distance may differ from that in untouched rock to be bonded: a crack
+that opens so far has released all force."""
 PARKED = 3.0
 """Particles that are not in the rock yet stand so many heights of the window below it, and their largest diameters
 apart."""
@@ -78,8 +81,7 @@ class RockMass(RockAssembly):
         places = self.positions + self.laps[:, None] * self.period
         aside = np.flatnonzero(self.absent)
         spacing = 2.5 * float(self.radii.max())
-        columns = max(1, int(self.width / spacing))
-        row, column = np.divmod(np.arange(len(aside)), columns)
+        row, column = np.divmod(aside, max(1, int(self.width / spacing)))
         places[aside] = np.column_stack([column * spacing, -PARKED * self.height - row * spacing])
         return places
 
@@ -106,12 +108,41 @@ class RockMass(RockAssembly):
         self.absent = np.asarray(gone, bool).copy()
 
     def advance(self):
-        """Move the window by a slab. -> numbers (k,) of the particles that left it behind and entered it ahead."""
+        """Move the window by a slab. -> numbers (k,) of the particles that left it behind and enter it ahead."""
         moved = np.flatnonzero(self.slab == self.passed % SLABS)
         self.laps[moved] += 1
         self.absent[moved] = False
         self.passed += 1
         return moved
+
+    def fit(self, moved, positions):
+        """Fit the slab that enters to the rock that is there. positions: (n, 2) m, where that is now.
+
+        Rock at the end of the window is displaced by the cut: the slab enters displaced as much, in the mean. A crack
+        may have reached the end, and chips may lie beyond it. Bonds that would be made longer or shorter than in
+        untouched rock by more than MISFIT are left out, and what the slab would overlap by more than that is absent
+        from now on.
+
+        -> (2,) m of the slab's displacement; bonds (m,) bool that are made; numbers (l,) of the particles in the way.
+        """
+        i, j = self.pairs.T
+        new = np.isin(np.arange(self.count), moved)
+        made = self.bonded & (new[i] | new[j])
+        joining = np.unique(self.pairs[made & (new[i] ^ new[j])])
+        joining = joining[~new[joining]]
+        places = self.places
+        off = positions[joining] - places[joining]
+        whole = np.linalg.norm(off, axis=1) < MISFIT * self.radii[joining]
+        offset = off[whole].mean(axis=0) if whole.any() else np.zeros(2)
+        now = np.where(new[:, None], places + offset, positions)
+        misfit = np.linalg.norm(now[i] - now[j], axis=1) - self.bond_lengths
+        made &= abs(misfit) <= MISFIT * (self.radii[i] + self.radii[j])
+        overlapping = packing.contacts(now, self.radii, -MISFIT * float(self.radii.min()))
+        a, b = overlapping[new[overlapping[:, 0]] ^ new[overlapping[:, 1]]].T
+        joined = np.isin(a * self.count + b, self.pairs[made] @ [self.count, 1])
+        in_the_way = np.unique(np.where(new[a], b, a)[~joined])
+        self.absent[in_the_way] = True
+        return offset, made & ~self.absent[self.pairs].any(axis=1), in_the_way
 
     def layouts(self):
         """(positions (n, 2) m, bonds (m,) bool) pairs that show every bond at least once between neighbours as they

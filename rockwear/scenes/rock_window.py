@@ -31,13 +31,14 @@ class RockWindow:
 
     The slab behind leaves with all that it has become: chips that it broke into go wherever they are, with their
     momentum and heat. It goes in ahead as untouched rock, at rest, bonded with the rock that is there as it lies, at
-    the rock's first temperature. This happens between two steps, and balances count it as no change. `groove` and
+    the rock's first temperature. Chips that lie where it goes in leave too (`cleared` counts their particles), and
+    bonds across a crack that has reached the end are not made (`missed`). This happens between two steps, and balances count it as no change. `groove` and
     `chips` are the record of what has left; see `_book`.
     """
 
     def __init__(self, *, rock, behind, sides=True):
         self.rock, self.behind, self.sides = rock, behind, sides
-        self.held = np.zeros(0, int)
+        self.held, self.cleared, self.missed = np.zeros(0, int), 0, 0
 
     def begin(self, scene, boundary):
         """The scene has been built: hold the ends."""
@@ -58,25 +59,28 @@ class RockWindow:
         if self.sides:
             self.boundary.let_go(self.held)
         moved = rock.advance()
+        offset, made, in_the_way = rock.fit(moved, rock_states(rock)[:, :2])
         bottom = moved[rock.anchored[moved]]
         self.boundary.let_go(bottom)
-        self._put_in_again(moved)
-        touched = np.isin(rock.pairs, moved).any(axis=1)
-        made = np.flatnonzero(touched & rock.bonded)
+        self._put(moved, rock.places[moved] + offset, FREE)
+        self._put(in_the_way, rock.places[in_the_way], HELD)
+        left = np.isin(rock.pairs, [*moved, *in_the_way]).any(axis=1)
+        made = np.flatnonzero(made)
+        self.cleared += len(in_the_way)
+        self.missed += int(np.sum(left & rock.bonded)) - len(made)
         yade_scene.bond_again(rock, made)
         scene.skip_step()
-        bonds.renew(np.flatnonzero(touched), made)
+        bonds.renew(np.flatnonzero(left), made)
         self._hold_bottom(bottom)
         self._hold_sides()
         scene.open_books(moved)
 
-    def _put_in_again(self, numbers):
-        places = self.rock.places[numbers].tolist()
-        for n, (x, y) in zip(numbers.tolist(), places):
+    def _put(self, numbers, places, blocked):
+        for n, (x, y) in zip(numbers.tolist(), places.tolist()):
             for interaction in O.interactions.withBody(n):
                 O.interactions.erase(interaction.id1, interaction.id2)
             state = O.bodies[n].state
-            state.blockedDOFs = FREE
+            state.blockedDOFs = blocked
             state.pos, state.ori = Vector3(x, y, 0.0), Quaternion((0, 0, 1), 0.0)
             state.vel = state.angVel = Vector3.Zero
 
@@ -105,10 +109,12 @@ class RockWindow:
 
     def state(self):
         """What a restart needs."""
-        return {"rock": self.rock.state(), "held": self.held.copy()}
+        return {"rock": self.rock.state(), "held": self.held.copy(), "cleared": self.cleared,
+                "missed": self.missed}
 
     def restore(self, state, scene, boundary):
         """Take back what `state` gave."""
         self.scene, self.boundary = scene, boundary
         self.rock.restore(state["rock"])
         self.held = state["held"].astype(int)
+        self.cleared, self.missed = int(state["cleared"]), int(state["missed"])

@@ -137,7 +137,9 @@ class SteadyCut(Programme):
         steady = columns["distance"] > self.ramp_length
         found = {f"mean_{name}": (float(columns[name][steady].mean()), unit) for name in ("cutting_force",
                                                                                          "thrust_force")}
-        return {**found, "peak_cutting_force": (float(columns["cutting_force"].max()), unit),
+        return {**found, "window_passed": (self.window.rock.begin, "m"),
+                "chip_particles_cleared": (self.window.cleared, "-"), "bonds_missed_ahead": (self.window.missed, "-"),
+                "peak_cutting_force": (float(columns["cutting_force"].max()), unit),
                 "specific_energy": (found["mean_cutting_force"][0] / self.depth_of_cut, "J/m3")}
 
     def state(self):

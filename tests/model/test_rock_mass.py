@@ -1,0 +1,161 @@
+"""The rock mass: periodic without a seam, its window of constant size."""
+import numpy as np
+import pytest
+
+from rockwear.kernels import packing
+from rockwear.kernels.checks import ParameterError
+from rockwear.kernels.conduction import HeatNetwork
+from rockwear.kernels.grains import grains
+from rockwear.kernels.polygon import reach
+from rockwear.kernels.voronoi import periodic_cells
+from rockwear.model.rock_mass import SLABS, RockMass
+
+SIZE = dict(width=0.06, height=0.03, radius_min=0.8e-3, radius_max=1.2e-3, porosity=0.12, bonding_gap=1e-4,
+            density=2300.0)
+
+
+@pytest.fixture(scope="module")
+def rock():
+    return RockMass(seed=3, **SIZE)
+
+
+def fresh():
+    return RockMass(seed=3, **SIZE)
+
+
+def bonds_by_places(mass):
+    """Pairs that stand within the bonding gap of each other in the window as it is now."""
+    found = packing.contacts(mass.places, mass.radii, SIZE["bonding_gap"] * (1 + 1e-9))
+    return {tuple(pair) for pair in found.tolist()}
+
+
+def test_a_bond_is_there_exactly_where_its_particles_stand_next_to_each_other():
+    mass = fresh()
+    for _ in range(2 * SLABS + 3):
+        assert {tuple(pair) for pair in mass.pairs[mass.bonded].tolist()} == bonds_by_places(mass)
+        mass.advance()
+
+
+def test_the_window_holds_each_particle_once_and_moves_by_slabs():
+    mass = fresh()
+    for k in range(1, 2 * SLABS):
+        moved = mass.advance()
+        x = mass.places[:, 0]
+        assert mass.begin == pytest.approx(k * mass.slab_length)
+        assert x.min() >= mass.begin - 1e-12 and x.max() <= mass.end + 1e-12
+        assert x[moved].min() >= mass.end - mass.slab_length - 1e-12
+
+
+def test_the_packing_is_as_dense_at_the_seam_as_anywhere(rock):
+    """Bonds that cross a vertical line, over many lines: no place stands out."""
+    i, j = rock.pairs.T
+    apart = packing.separation(rock.positions, i, j, rock.period)[:, 0]
+    at = rock.positions[i, 0]
+    lines = (np.arange(24) + 0.5) * rock.width / 24
+    low, high = np.minimum(at, at + apart), np.maximum(at, at + apart)
+    crossed = [sum(np.sum((low + k * rock.width < x) & (high + k * rock.width > x)) for k in (-1, 0, 1))
+               for x in np.append(lines, 0.0)]
+    spread = np.std(crossed[:-1])
+    assert abs(crossed[-1] - np.mean(crossed[:-1])) < 3 * spread
+
+
+def test_what_is_absent_stands_aside_unbonded_until_it_comes_in():
+    mass = fresh()
+    gone = mass.positions[:, 1] > 0.02
+    mass.leave_out(gone)
+    assert not mass.bonded[gone[mass.pairs].any(axis=1)].any()
+    assert mass.places[gone, 1].max() < -mass.height
+    assert len(packing.contacts(mass.places[gone], mass.radii[gone])) == 0
+    for _ in range(SLABS):
+        mass.advance()
+    assert not mass.absent.any()
+    assert {tuple(pair) for pair in mass.pairs[mass.bonded].tolist()} == bonds_by_places(mass)
+
+
+def test_untouched_rock_fits_without_a_gap():
+    mass = fresh()
+    moved = mass.advance()
+    offset, made, in_the_way = mass.fit(moved, mass.places)
+    assert not len(in_the_way) and abs(offset).max() < 1e-15
+    assert (made == (mass.bonded & np.isin(mass.pairs, moved).any(axis=1))).all()
+
+
+def test_rock_enters_displaced_as_the_rock_that_is_there():
+    mass = fresh()
+    moved = mass.advance()
+    offset, made, in_the_way = mass.fit(moved, mass.places + [3e-6, 1e-6])
+    assert offset == pytest.approx([3e-6, 1e-6]) and not len(in_the_way)
+    assert made.sum() == (mass.bonded & np.isin(mass.pairs, moved).any(axis=1)).sum()
+
+
+def test_a_chip_that_lies_where_rock_enters_is_put_aside():
+    mass = fresh()
+    places = mass.places.copy()
+    chip = int(np.argmax(places[:, 1] - 10 * abs(places[:, 0] - 0.03)))
+    places[chip] = mass.end + 0.5 * mass.slab_length, 0.015
+    _, made, in_the_way = mass.fit(mass.advance(), places)
+    assert in_the_way.tolist() == [chip] and mass.absent[chip]
+    assert not (made | mass.bonded)[(mass.pairs == chip).any(axis=1)].any()
+
+
+def test_rock_is_not_bonded_across_an_open_crack():
+    mass = fresh()
+    places, end = mass.places.copy(), mass.places[:, 0] > mass.end - 2e-3
+    places[end] -= [5e-5, 0.0]
+    moved = mass.advance()
+    _, made, in_the_way = mass.fit(moved, places)
+    across = np.isin(mass.pairs, moved).sum(axis=1) == 1
+    assert (mass.bonded & across).sum() > 10 and not made[across].any()
+
+
+def test_grains_have_no_seam(rock):
+    """Shifting the rock by half its period shifts the statistics of the grains: as many grains end at the seam."""
+    numbers = grains(rock.positions, volume=rock.volume, edge=3e-3, seed=1, period=rock.period)
+    i, j = rock.pairs.T
+    across = rock.crossing != 0
+    between = numbers[i] != numbers[j]
+    walled = grains(rock.positions, volume=rock.volume, edge=3e-3, seed=1)
+    assert between[across].mean() < 0.75 < (walled[i] != walled[j])[across].mean()
+
+
+def test_periodic_cells_fill_the_period_and_conduct_a_linear_temperature_exactly(rock):
+    cells = periodic_cells(rock.positions, period=rock.width, height=rock.height)
+    assert cells.volumes.sum() == pytest.approx(rock.width * rock.height, rel=1e-9)
+    assert len(np.unique(cells.edges, axis=0)) == len(cells.edges)
+    y = rock.positions[:, 1]
+    flow = cells.conductance(2.0) * (y[cells.edges[:, 1]] - y[cells.edges[:, 0]])
+    balance = (np.bincount(cells.edges[:, 0], flow, rock.count) - np.bincount(cells.edges[:, 1], flow, rock.count))
+    inside = np.isin(np.arange(rock.count), np.concatenate([cells.walls[2][0], cells.walls[3][0]]), invert=True)
+    assert abs(balance[inside]).max() < 1e-9 * abs(flow).max()
+
+
+def test_heat_flows_across_the_seam(rock):
+    edges, conductance = rock.paths("voronoi", 2.0)
+    capacity = np.full(rock.count, 1.0)
+    network = HeatNetwork(capacity=capacity, edges=edges, conductance=conductance,
+                          temperature=np.where(rock.positions[:, 0] < 2e-3, 400.0, 300.0))
+    network.advance(5.0)
+    far = rock.positions[:, 0] > rock.width - 2e-3
+    assert network.temperature[far].mean() > 302.0
+
+
+def test_every_bond_shows_between_neighbours_in_one_of_the_layouts(rock):
+    lengths = rock.bond_lengths
+    seen = np.zeros(len(rock.pairs), bool)
+    for positions, shown in rock.layouts():
+        i, j = rock.pairs[shown].T
+        assert np.linalg.norm(positions[i] - positions[j], axis=1) == pytest.approx(lengths[shown], rel=1e-12)
+        seen |= shown
+    assert seen.all() and not rock.layouts()[0][1].all()
+
+
+def test_reach_is_the_foremost_point_of_a_polygon_at_a_height():
+    triangle = np.array([[0.0, 0.0], [2.0, 1.0], [0.0, 2.0]])
+    assert reach(triangle, np.array([0.0, 0.5, 1.0, 1.5, 3.0])).tolist() == [0.0, 1.0, 2.0, 1.0, -np.inf]
+
+
+@pytest.mark.parametrize("name, value", [("width", 0.0), ("bonding_gap", 1.0), ("grading_factor", 0.5)])
+def test_bad_windows_are_refused(name, value):
+    with pytest.raises(ParameterError) as refused:
+        RockMass(seed=1, **{**SIZE, name: value})
+    assert refused.value.name == name

@@ -1,0 +1,42 @@
+"""The window of a rock mass moves on over rock that the tool does not touch.
+
+    yade -n -x window_at_rest.py LAW CHECKS.json
+"""
+import json
+import os
+import sys
+
+from yade import O, utils
+
+from rockwear.model.rock_mass import SLABS
+from rockwear.run import parameters
+from rockwear.scenes import steady_cut
+
+law, file = sys.argv[1:]
+groups = steady_cut.groups(
+    window_behind=0.014, window_ahead=0.026, window_height=0.02, radius_min=0.8e-3, radius_max=1.2e-3, heat=False,
+    tool_radius_min=4e-4, tool_radius_max=5e-4, tooth_height=0.015, tooth_width=0.01, depth_of_cut=5e-3, bond_law=law,
+    background_damping=0.0)
+values = parameters.read(groups, [])
+scene = steady_cut.make(values)
+scene.programme.run = lambda: False
+scene.build()
+window, bonds, whole = scene.programme.window, [], []
+for k in range(2 * SLABS):
+    # Whole rock, from which the tool is far off.
+    if k == SLABS:
+        for body in scene.tool.bodies.ids:
+            O.bodies[body].state.pos += (0.0, 0.1, 0.0)
+    window._advance()
+    if k >= SLABS:
+        for _ in range(20):
+            O.step()
+        scene.canonical()
+        bonds.append(int((scene.bonds.status == 0).sum()))
+        whole.append(int(scene.rock.bonded.sum()))
+stored = scene.stored_energy()
+found = {"kinetic": utils.kineticEnergy(), "elastic": stored["elastic"], "cracks": len(scene.bonds.cracks),
+         "bonds": bonds, "whole": whole, "interactions": sum(i.isReal for i in O.interactions)}
+with open(file, "w", encoding="utf-8") as out:
+    json.dump(found, out)
+os._exit(0)

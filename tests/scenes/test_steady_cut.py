@@ -1,0 +1,61 @@
+"""The steady cut: a window that moves along, with closed balances, bit-equal restarts and rock at rest left at rest."""
+import signal
+
+import pytest
+
+from tests.running import (
+    ROOT, arguments, assert_as_if_never_stopped, assert_refused, checks_of, history, interrupt_script, refusals,
+    run_script, value)
+
+SCRIPT = ROOT / "yade_scripts/steady_cut.py"
+SMALL = dict(window_behind=0.016, window_ahead=0.048, window_height=0.026, radius_min=0.8e-3, radius_max=1.2e-3,
+             tool_radius_min=4e-4, tool_radius_max=5e-4, tooth_height=0.015, tooth_width=0.01, velocity=5.0,
+             tool_kn=2e10, tool_kt=2e10, contact_damping=0.2, ramp_length=2e-3, cut_length=0.02, report="false")
+"""A steady cut in miniature."""
+LAWS = {"brittle": {}, "softening": dict(bond_law="cohesive", kt=8e9, grain_edge=2.5e-3, weibull_modulus=4, heat="true")}
+
+
+def steady_cut(out, *flags, **values):
+    return run_script(SCRIPT, *arguments({**SMALL, **values}), "--out", str(out), *flags, out=out)
+
+
+@pytest.fixture(scope="module", params=LAWS)
+def never(request, tmp_path_factory):
+    run = steady_cut(tmp_path_factory.mktemp("never"), **LAWS[request.param])
+    assert run.code == 0, run.stderr
+    run.options = LAWS[request.param]
+    return run
+
+
+def test_the_window_moves_and_the_balance_closes(never):
+    energy = never.summary["balances"]["energy"]
+    assert value(never, "tensile_cracks") > 0
+    assert abs(energy["residual"]) < 0.03 * energy["tool_work"]
+    assert history(never.out)["distance"][-1] == pytest.approx(SMALL["cut_length"], abs=2e-4)
+    assert value(never, "window_passed") >= 5 * (SMALL["window_behind"] + SMALL["window_ahead"]) / 16
+
+
+def test_a_cut_goes_on_as_if_it_was_never_stopped(never, tmp_path):
+    options = {**SMALL, **never.options, "checkpoint_interval": 0.01}
+    stopped = interrupt_script(SCRIPT, tmp_path / "again", signal.SIGTERM, 12, **options)
+    assert stopped.code == 128 + signal.SIGTERM, stopped.stderr
+    resumed = steady_cut(tmp_path / "again", "--resume", **never.options, checkpoint_interval=0.01)
+    assert_as_if_never_stopped(resumed, never)
+
+
+@pytest.mark.parametrize("law", ["brittle", "cohesive"])
+def test_rock_at_rest_stays_at_rest_while_the_window_moves_on(law, tmp_path):
+    """Two periods of the window over rock that nothing touches: no stress, no crack, as many bonds as at first."""
+    found = checks_of("window_at_rest", tmp_path, law)
+    assert found["kinetic"] < 1e-20 and found["elastic"] < 1e-20
+    assert found["cracks"] == 0
+    assert found["bonds"] == found["whole"] and found["bonds"][-1] == found["interactions"]
+
+
+@pytest.mark.parametrize("values, words", [
+    (dict(depth_of_cut=0.0131), "depth_of_cut = 0.0131 m"), (dict(window_ahead=0.01), "window_ahead = 0.01 m"),
+    (dict(window_behind=0.005), "window_behind = 0.005 m"), (dict(ramp_length=0.02), "cut_length = 0.02 m"),
+    (dict(radius_max=2.1e-3), "radius_max = 0.0021 m"), (dict(tooth_height=0.004), "tooth_height = 0.004 m")])
+def test_a_cut_that_has_no_room_is_refused(values, words, tmp_path):
+    (code, said), = refusals(SCRIPT, tmp_path, [[*arguments({**SMALL, **values}), "--out", tmp_path / "out"]])
+    assert_refused(code, said, words)
