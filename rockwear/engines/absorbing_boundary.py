@@ -132,6 +132,8 @@ class AbsorbingBoundary(Engine):
             number = int(self.numbers[k])
             overlap = 2 * O.bodies[number].shape.radius
             O.forces.setPermF(number, Vector3(*(self.forces[k] + self.kn[k] * overlap * self.normals[k]), 0))
+        # Else a step right after one of YADE's loop goes without permanent forces.
+        O.forces.f(0, sync=True)
 
     @staticmethod
     def _states(numbers):

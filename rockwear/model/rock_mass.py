@@ -5,12 +5,15 @@ import numpy as np
 
 from rockwear.kernels import packing
 from rockwear.kernels.checks import not_negative, positive, require, within
+from rockwear.kernels.elastic_moduli import elastic_moduli
 from rockwear.kernels.voronoi import periodic_cells
 from rockwear.model.cache import cached
 from rockwear.model.rock import RockAssembly, graded_radius
 
 SLABS = 16
 """Parts of the window that leave it and enter it as one."""
+RIM = 6
+"""Largest radii next to bottom and surface that do not count for the moduli."""
 MISFIT = 5e-3
 """Parts of the sum of two radii by which their distance may differ from that in untouched rock to be bonded: a crack
 that opens so far has released all force."""
@@ -23,10 +26,11 @@ class RockMass(RockAssembly):
     """Discs of a packing that repeats itself along x with the length of the window, 1 m thick.
 
     A particle keeps its number and its `positions` in the period, 0 <= x < width; `laps` (n,) counts how many periods
-    further on it stands in the rock: its place is x + lap width. The window holds each particle once. It moves by slabs:
-    the slab that lies furthest behind leaves it, and goes in again ahead as untouched rock, with a lap more. `crossing`
-    (m,): periods from the first particle of a bond to the image of the second that it is bonded with; the bond is there
-    while their laps differ by that. `absent` (n,) bool: particles that the groove, in which the tool begins, leaves out.
+    further on it stands in the rock: its place is x + lap width. The window holds each particle once. It moves by
+    slabs: the slab that lies furthest behind leaves it, and goes in again ahead as untouched rock, with a lap more.
+    `crossing` (m,): periods from the first particle of a bond to the image of the second that it is bonded with; the
+    bond is there while their laps differ by that. `absent` (n,) bool: particles that are not there: the groove in which
+    the tool begins, chips in the way.
 
     width, height: m of the window; others as of a Specimen. Raises ParameterError naming the parameter.
     """
@@ -59,6 +63,8 @@ class RockMass(RockAssembly):
         self.laps, self.absent = np.zeros(self.count, int), np.zeros(self.count, bool)
         self.passed = 0
         """Slabs that have left the window."""
+
+    slabs = SLABS
 
     @property
     def slab_length(self):
@@ -143,6 +149,13 @@ class RockMass(RockAssembly):
         in_the_way = np.unique(np.where(new[a], b, a)[~joined])
         self.absent[in_the_way] = True
         return offset, made & ~self.absent[self.pairs].any(axis=1), in_the_way
+
+    def moduli(self):
+        """kernels.elastic_moduli.Moduli of the bonded packing."""
+        rim = RIM * self.radii.max()
+        kn, kt = self.stiffness()
+        return elastic_moduli(positions=self.positions, radii=self.radii, bonds=self.pairs, kn=kn, kt=kt,
+                              box=((0.0, rim), (self.width, self.height - rim)), periodic=(True, False))
 
     def layouts(self):
         """(positions (n, 2) m, bonds (m,) bool) pairs that show every bond at least once between neighbours as they

@@ -21,6 +21,8 @@ from rockwear.scenes.time_step import plane_steps, space_steps
 
 PATH_PERIOD = 100
 """Steps N between the corners of a curved path, which chords leave by (v dt N)^2 / 8R: 23 nm at 5.7 m/s and 0.7 m."""
+BOUNDARY_PERIOD = 10
+"""Steps between samples of the energy that the boundary absorbs."""
 SEPARATION_PERIOD = GUARD_PERIOD = 200
 """Steps between looks for separated bonds, and at the energy."""
 
@@ -30,8 +32,8 @@ class Cut(Scene):
 
     rock: a specimen of model.rock; bond_law: of kernels.bond_laws, which also gives the stiffness and friction of
     contacts in the rock; tool: a ToolAssembly; programme: a Programme; accuracy: scenes.accuracy.Accuracy; heat,
-    expansion, gravity: of scenes.physics, or None; background_damping: 1/s; non_viscous_damping: of each force;
-    bond_damping: of the critical damping of bonds, in the plane; time_scale: mechanical over physical rate;
+    expansion, gravity, boundary: of scenes.physics, or None; background_damping: 1/s; non_viscous_damping: of each
+    force; bond_damping: of the critical damping of bonds, in the plane; time_scale: mechanical over physical rate;
     depth_of_cut: m, to which depth the tool must reach to cut; notes: {name: (value, unit)} of further results;
     first_temperature: K of a tool without heat.
 
@@ -39,11 +41,11 @@ class Cut(Scene):
     """
 
     def __init__(self, *, rock, bond_law, tool, programme, accuracy, depth_of_cut, first_temperature, heat=None,
-                 expansion=None, gravity=None, background_damping=0.0, non_viscous_damping=0.0, bond_damping=0.0,
-                 time_scale=1.0, notes=None):
+                 expansion=None, gravity=None, boundary=None, background_damping=0.0, non_viscous_damping=0.0,
+                 bond_damping=0.0, time_scale=1.0, notes=None):
         super().__init__()
         self.rock, self.bond_law, self.tool, self.programme, self.accuracy = rock, bond_law, tool, programme, accuracy
-        self.heat_model, self.expansion_model, self.gravity = heat, expansion, gravity
+        self.heat_model, self.expansion_model, self.gravity, self.boundary_model = heat, expansion, gravity, boundary
         self.background_damping, self.time_scale = background_damping, time_scale
         self.non_viscous_damping, self.bond_damping = non_viscous_damping, bond_damping
         self.depth_of_cut, self.first_temperature, self.notes = depth_of_cut, first_temperature, notes or {}
@@ -108,6 +110,7 @@ class Cut(Scene):
         self.dashpots = None
         if self.bond_damping:
             self.dashpots = BondDashpots(rock=rock, bonds=self.bonds, ratio=self.bond_damping)
+        self.boundary = self.boundary_model.engine(rock, BOUNDARY_PERIOD) if self.boundary_model else None
         self.recorder = Recorder(self.output.history(), period=max(1, self.steps_in(accuracy.record_period)))
         self.guard = EnergyGuard(work=lambda: tool.contact.work_done, floor=self._least_energy(), period=GUARD_PERIOD)
         curved = self.programme.motion.angular_velocity
@@ -117,7 +120,8 @@ class Cut(Scene):
             self.bonds, self.dashpots, tool.contact, self.rock_friction,
             Separation(self.bonds, period=SEPARATION_PERIOD),
             PathFollower(bodies=tool.bodies, clock=self.programme.path_time, period=PATH_PERIOD) if curved else None,
-            tool.wear_engine, tool.profile, self.heat, self.expansion, self.damping, self.recorder, self.guard)
+            tool.wear_engine, tool.profile, self.heat, self.expansion, self.damping, self.boundary,
+            self.recorder, self.guard)
 
     def _make_heat(self):
         self.heat = self.expansion = None
@@ -249,6 +253,8 @@ class Cut(Scene):
     def stored_energy(self):
         found = super().stored_energy()
         found["contact_elastic"] += self.tool.contact.elastic_energy()
+        if self.boundary:
+            found["boundary_elastic"] = self.boundary.elastic_energy()
         if self.non_viscous_damping:
             # It is not stored, but a stage that begins anew resets YADE's sum like the stored energies.
             found["non_viscous_damping"] = access.damped_energy()

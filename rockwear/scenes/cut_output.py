@@ -25,6 +25,8 @@ class CutOutput(Output):
                    "removed_contacts": scene.tool.removed_energy}
         if scene.dashpots:
             balance["bond_dashpots"] = scene.dashpots.dissipated
+        if scene.boundary:
+            balance["boundary_dashpots"] = scene.boundary.absorbed
         if scene.expansion:
             balance["thermal_expansion"] = -scene.expansion.work
         return with_residual(balance, "tool_work")
@@ -69,7 +71,8 @@ class CutOutput(Output):
         size = {"box": np.array([rock.width, rock.height])} if scene.in_plane else {
             "block": np.array([rock.width, rock.height, rock.depth])}
         heat = {"thermal_positions": scene.tool.thermal_body.positions} if scene.heat else {}
-        return {"rock_radii": rock.radii, "rock_fixed": rock.anchored, "bonds": rock.pairs, "outline": scene.tool.outline,
+        return {"rock_radii": rock.radii, "rock_fixed": rock.anchored, "bonds": rock.pairs,
+                "outline": scene.tool.outline,
                 **size, **heat, **scene.tool.model_arrays(), **scene.programme.arrays}
 
     def snapshot(self):

@@ -6,6 +6,7 @@ import numpy as np
 from yade import NewtonIntegrator, Vector3
 
 from rockwear.engines import access
+from rockwear.engines.absorbing_boundary import AbsorbingBoundary
 from rockwear.engines.expansion import Expansion
 from rockwear.engines.heat import Heat
 from rockwear.kernels.archard import Hardness
@@ -137,6 +138,20 @@ class ThermalExpansion:
         return Expansion(coefficient=self.coefficient, rock=rock, reference=self.reference, bonds=bonds,
                          temperature=lambda: heat.network.temperature[:rock.count], period=period,
                          loose=lambda: [*rock_friction.contacts, *(entry[0] for entry in tool_contact.possible)])
+
+
+@dataclass(frozen=True)
+class Boundary:
+    """What holds the ends of a rock mass: "absorbing", springs and dashpots of the rock beyond; "fixed", nothing moves;
+    "free", nothing moves at the bottom, and the sides are free."""
+
+    kind: str
+
+    def engine(self, rock, period):
+        """engines.absorbing_boundary.AbsorbingBoundary; None where nothing moves."""
+        if self.kind != "absorbing":
+            return None
+        return AbsorbingBoundary(moduli=rock.moduli(), density=rock.density, period=period)
 
 
 @dataclass(frozen=True)

@@ -3,6 +3,7 @@ import numpy as np
 from yade import O, Quaternion, Vector3
 
 from rockwear.engines.access import rock_states
+from rockwear.engines.bond_log import INTACT
 from rockwear.scenes import yade_scene
 
 FREE = "zXY"
@@ -26,18 +27,21 @@ class FixedBoundary:
 
 
 class RockWindow:
-    """Moves the window of a model.rock_mass.RockMass by a slab whenever the tool is `behind` (m) further than its left
-    end and a slab.
+    """Moves the window of rock by a slab whenever the tool has gone as far; its tip stays `behind` (m) from the left
+    end, and up to a slab more.
 
     The slab behind leaves with all that it has become: chips that it broke into go wherever they are, with their
     momentum and heat. It goes in ahead as untouched rock, at rest, bonded with the rock that is there as it lies, at
     the rock's first temperature. Chips that lie where it goes in leave too (`cleared` counts their particles), and
-    bonds across a crack that has reached the end are not made (`missed`). This happens between two steps, and balances count it as no change. `groove` and
-    `chips` are the record of what has left; see `_book`.
+    bonds across a crack that has reached the end are not made (`missed`).
+    This happens between two steps, and balances count it as no change.
+
+    rock: model.rock_mass.RockMass; record: scenes.cut_record.CutRecord of what leaves; sides: whether the ends are held
+    too, and not the bottom alone.
     """
 
-    def __init__(self, *, rock, behind, sides=True):
-        self.rock, self.behind, self.sides = rock, behind, sides
+    def __init__(self, *, rock, behind, record, sides=True):
+        self.rock, self.behind, self.record, self.sides = rock, behind, record, sides
         self.held, self.cleared, self.missed = np.zeros(0, int), 0, 0
 
     def begin(self, scene, boundary):
@@ -48,22 +52,32 @@ class RockWindow:
         for n in np.flatnonzero(self.rock.absent).tolist():
             O.bodies[n].state.blockedDOFs = HELD
 
-    def follow(self, tip):
-        """Bring the window along to where the tip of the tool is at x = `tip` (m)."""
-        while tip - self.behind >= self.rock.begin + self.rock.slab_length:
-            self._advance()
+    def follow(self, distance):
+        """Bring the window along to where the tool has gone so far (m)."""
+        while distance >= self.rock.begin + self.rock.slab_length:
+            self.advance(distance)
 
-    def _advance(self):
+    def whole_record(self, distance, behind):
+        """(groove, chips) rows of all the rock further back than x = `behind` (m)."""
+        return self.record.whole(positions=rock_states(self.rock)[:, :2], distance=distance, behind=behind,
+                                 intact=self.scene.bonds.status == INTACT)
+
+    def advance(self, distance=0.0):
+        """Move on by a slab; distance: m that the tool has gone."""
         scene, rock, bonds = self.scene, self.rock, self.scene.bonds
         scene.close_books()
+        positions = rock_states(rock)[:, :2]
+        self.record.book(positions=positions, intact=bonds.status == INTACT, distance=distance)
         if self.sides:
             self.boundary.let_go(self.held)
         moved = rock.advance()
-        offset, made, in_the_way = rock.fit(moved, rock_states(rock)[:, :2])
+        offset, made, in_the_way = rock.fit(moved, positions)
         bottom = moved[rock.anchored[moved]]
         self.boundary.let_go(bottom)
         self._put(moved, rock.places[moved] + offset, FREE)
         self._put(in_the_way, rock.places[in_the_way], HELD)
+        # YADE's loop would find contacts of supports anew, as of rock.
+        O.interactions.eraseNonReal()
         left = np.isin(rock.pairs, [*moved, *in_the_way]).any(axis=1)
         made = np.flatnonzero(made)
         self.cleared += len(in_the_way)
@@ -109,12 +123,13 @@ class RockWindow:
 
     def state(self):
         """What a restart needs."""
-        return {"rock": self.rock.state(), "held": self.held.copy(), "cleared": self.cleared,
-                "missed": self.missed}
+        return {"rock": self.rock.state(), "record": self.record.state(), "held": self.held.copy(),
+                "cleared": self.cleared, "missed": self.missed}
 
     def restore(self, state, scene, boundary):
         """Take back what `state` gave."""
         self.scene, self.boundary = scene, boundary
         self.rock.restore(state["rock"])
+        self.record.restore(state["record"])
         self.held = state["held"].astype(int)
         self.cleared, self.missed = int(state["cleared"]), int(state["missed"])

@@ -5,25 +5,31 @@ import numpy as np
 from yade import O
 
 from rockwear.kernels.checks import require
+from rockwear.kernels.fragments import chip_length
+from rockwear.kernels.groove import groove_results
 from rockwear.kernels.parameter import Group, Parameter, above_zero, choice, number
 from rockwear.kernels.polygon import reach
 from rockwear.kernels.rigid_motion import Straight
+from rockwear.kernels.steady_record import steady_results, with_error
 from rockwear.model.rock_mass import SLABS, RockMass
 from rockwear.scenes import parameters, parts
 from rockwear.scenes.cut import Cut
+from rockwear.scenes.cut_record import CHIPS, GROOVE, CutRecord, table
+from rockwear.scenes.output import crack_table
+from rockwear.scenes.physics import Boundary
 from rockwear.scenes.programme import Programme
 from rockwear.scenes.rock_window import FixedBoundary, RockWindow
 
 LEAST_SPEED = 0.05
 """Part of the cutting velocity with which the ramp of speed begins."""
-BOUNDARIES = "fixed", "free"
+BOUNDARIES = "absorbing", "fixed", "free"
 
 WINDOW = Group("rock", (
     Parameter("window_behind", 0.03, "m", above_zero, "length of the window behind the tip"),
     Parameter("window_ahead", 0.06, "m", above_zero, "length of the window ahead of the tip"),
     Parameter("window_height", 0.04, "m", above_zero, "height of the window"),
-    Parameter("boundary", BOUNDARIES[0], "", choice(*BOUNDARIES), "of the window below the rock's surface; free: only "
-              "the bottom is held"),
+    Parameter("boundary", BOUNDARIES[0], "", choice(*BOUNDARIES), "of the window: springs and dashpots of the rock "
+              "beyond; nothing moves; or the same at the bottom alone"),
     *(p for p in parameters.SPECIMEN.parameters if p.name not in ("width", "height"))))
 STEADY = Group("motion", (
     *(p for p in parameters.CUT_MOTION if p.name != "approach"),
@@ -58,8 +64,10 @@ def make(values):
     programme = SteadyCut(
         velocity=v.velocity * v.time_scale, cut_length=v.cut_length, ramp_length=v.ramp_length,
         start=(v.window_behind, path), depth_of_cut=v.depth_of_cut,
-        window=RockWindow(rock=rock, behind=v.window_behind, sides=v.boundary != "free"))
+        window=RockWindow(rock=rock, behind=v.window_behind, sides=v.boundary != "free",
+                          record=CutRecord(rock=rock, start=(v.window_behind, path))))
     return Cut(tool=tool, programme=programme, rock=parts.bond(rock, v), time_scale=v.time_scale,
+               boundary=Boundary(v.boundary),
                background_damping=v.background_damping, **parts.common(v))
 
 
@@ -98,6 +106,7 @@ class SteadyCut(Programme):
 
     def __init__(self, *, velocity, cut_length, ramp_length, start, depth_of_cut, window):
         super().__init__(Straight(start=start, velocity=(velocity, 0.0)), {"stage_names": np.array(["cut"])})
+        self.origin = start
         self.velocity, self.cut_length, self.ramp_length, self.window = velocity, cut_length, ramp_length, window
         self.depth_of_cut = depth_of_cut
         self.way, self.speed, self.since = 0.0, 0.0, 0
@@ -108,7 +117,10 @@ class SteadyCut(Programme):
     def begin(self):
         super().begin()
         self.since = O.iter
-        self.window.begin(self.scene, FixedBoundary())
+        self.window.begin(self.scene, self._boundary())
+
+    def _boundary(self):
+        return self.scene.boundary or FixedBoundary()
 
     @property
     def distance(self):
@@ -117,7 +129,7 @@ class SteadyCut(Programme):
 
     def run(self):
         self.way, self.since = self.distance, O.iter
-        self.window.follow(self.motion.start[0] + self.way)
+        self.window.follow(self.way)
         self.since = O.iter
         ramp = 2 * self.ramp_length / self.velocity
         reached = (self.step + 0.5 * self.scene.chunk) * self.scene.time_step
@@ -130,17 +142,32 @@ class SteadyCut(Programme):
     def log(self):
         return {"distance": (self.distance, "m")}
 
+    def _record(self):
+        """(groove (k, 2), chips (l, 6)) up to now, without what lies within a depth of cut of the tip."""
+        groove, chips = self.window.whole_record(self.distance, self.origin[0] + self.distance - self.depth_of_cut)
+        return np.array(groove).reshape(-1, len(GROOVE)), np.array(chips).reshape(-1, len(CHIPS))
+
     def results(self, columns):
-        if not columns:
-            return {}
-        unit = self.scene.units.force
-        steady = columns["distance"] > self.ramp_length
-        found = {f"mean_{name}": (float(columns[name][steady].mean()), unit) for name in ("cutting_force",
-                                                                                         "thrust_force")}
-        return {**found, "window_passed": (self.window.rock.begin, "m"),
-                "chip_particles_cleared": (self.window.cleared, "-"), "bonds_missed_ahead": (self.window.missed, "-"),
-                "peak_cutting_force": (float(columns["cutting_force"].max()), unit),
-                "specific_energy": (found["mean_cutting_force"][0] / self.depth_of_cut, "J/m3")}
+        window, found = self.window, {}
+        if columns:
+            found = steady_results(distance=columns["distance"], cutting=columns["cutting_force"],
+                                   thrust=columns["thrust_force"], friction_work=columns["tool_friction"],
+                                   depth=self.depth_of_cut)
+            begin = found["transient"][0]
+            (x, height), chips = (part[part[:, 0] > begin].T for part in self._record())
+            found.update(groove_results(x=x, height=height, chip=found["peak_spacing"][0]))
+            length = chip_length(particles=chips[1], area=chips[2], length=chips[3])
+            found.update(with_error("chip_length", length, "m"))
+            found["peak_cutting_force"] = float(columns["cutting_force"].max()), self.scene.units.force
+        return {**found, "window_passed": (window.rock.begin, "m"), "chip_particles_cleared": (window.cleared, "-"),
+                "bonds_missed_ahead": (window.missed, "-")}
+
+    def tables(self):
+        groove, chips = self._record()
+        x, y = self.origin
+        cracks = [crack._replace(x=crack.x - x, y=crack.y - y) for crack in self.scene.bonds.cracks]
+        return {"groove.csv": table(GROOVE, groove.tolist()), "chips.csv": table(CHIPS, chips.tolist()),
+                **crack_table(cracks)}
 
     def state(self):
         return {**super().state(), "window": self.window.state(), "way": self.way, "speed": self.speed,
@@ -149,4 +176,4 @@ class SteadyCut(Programme):
     def restore(self, state):
         super().restore(state)
         self.way, self.speed, self.since = float(state["way"]), float(state["speed"]), int(state["since"])
-        self.window.restore(state["window"], self.scene, FixedBoundary())
+        self.window.restore(state["window"], self.scene, self._boundary())

@@ -27,7 +27,7 @@ for k in range(2 * SLABS):
     if k == SLABS:
         for body in scene.tool.bodies.ids:
             O.bodies[body].state.pos += (0.0, 0.1, 0.0)
-    window._advance()
+    window.advance()
     if k >= SLABS:
         for _ in range(20):
             O.step()
@@ -35,8 +35,9 @@ for k in range(2 * SLABS):
         bonds.append(int((scene.bonds.status == 0).sum()))
         whole.append(int(scene.rock.bonded.sum()))
 stored = scene.stored_energy()
+among_rock = sum(i.isReal and max(i.id1, i.id2) < scene.rock.count for i in O.interactions)
 found = {"kinetic": utils.kineticEnergy(), "elastic": stored["elastic"], "cracks": len(scene.bonds.cracks),
-         "bonds": bonds, "whole": whole, "interactions": sum(i.isReal for i in O.interactions)}
+         "bonds": bonds, "whole": whole, "interactions": among_rock}
 with open(file, "w", encoding="utf-8") as out:
     json.dump(found, out)
 os._exit(0)
