@@ -107,6 +107,15 @@ class RockAssembly:
         return self.positions
 
     @property
+    def frame(self):
+        """(d,) m, the origin of what pictures show."""
+        return np.zeros(self.dimensions)
+
+    def shown(self, positions):
+        """Places (n, d) m in that frame of particles at `positions` (n, d) m; nan for those that are not there."""
+        return positions
+
+    @property
     def bonded(self):
         """(m,) bool: pairs that are bonded as the scene begins."""
         return np.ones(len(self.pairs), bool)

@@ -92,6 +92,15 @@ class RockMass(RockAssembly):
         return places
 
     @property
+    def frame(self):
+        """(2,) m, the lower left corner of the window."""
+        return np.array([self.begin, 0.0])
+
+    def shown(self, positions):
+        """Places (n, 2) m in the window; nan for particles that are not there."""
+        return np.where(self.absent[:, None], np.nan, positions - self.frame)
+
+    @property
     def bonded(self):
         """(m,) bool: bonds that the window's rock has while nothing has broken it."""
         i, j = self.pairs.T

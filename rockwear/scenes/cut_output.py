@@ -6,6 +6,7 @@ from yade import utils
 
 from rockwear.engines import access
 from rockwear.kernels.archard import KELVIN
+from rockwear.kernels.rigid_motion import Pose
 from rockwear.run import vtk
 from rockwear.scenes.balances import energy_warnings, with_residual
 from rockwear.scenes.output import Output, crack_table
@@ -82,10 +83,11 @@ class CutOutput(Output):
         pose = scene.tool.bodies.pose
         heat = {"temperature": scene.heat.network.temperature,
                 "thermal_alive": scene.tool.thermal_body.alive} if scene.heat else {"temperature": np.empty(0)}
-        return {"time": scene.time, "stage": scene.stage, "rock_positions": access.rock_positions(rock),
+        return {"time": scene.time, "stage": scene.stage, "rock_positions": rock.shown(access.rock_positions(rock)),
                 "broken_bonds": np.bincount(rock.pairs[(scene.bonds.status != 0) & rock.bonded].ravel(),
                                             minlength=rock.count),
-                "status": scene.bonds.status, "tool_offset": pose.offset, "tool_turn": pose.turn,
+                "status": scene.bonds.status, "tool_offset": pose.offset - rock.frame[:2],
+                "tool_turn": pose.turn,
                 **heat, **scene.tool.snapshot()}
 
     def write_vtk(self, folder, number):
@@ -96,8 +98,10 @@ class CutOutput(Output):
         if scene.heat:
             fields["temperature"] = shot["temperature"][:rock.count]
         places, of_tool = scene.tool.points(scene.heat.temperature_of_pieces() if scene.heat else None)
-        vtk.write(folder / f"rock.{number:04d}.vtk", shot["rock_positions"], fields)
-        turned = scene.tool.bodies.pose.of(places[:, :2])
+        there = np.isfinite(shot["rock_positions"]).all(axis=1)
+        vtk.write(folder / f"rock.{number:04d}.vtk", shot["rock_positions"][there],
+                  {name: values[there] for name, values in fields.items()})
+        turned = Pose(shot["tool_offset"], shot["tool_turn"]).of(places[:, :2])
         vtk.write(folder / f"tool.{number:04d}.vtk", np.column_stack([turned, places[:, 2:]]), of_tool)
 
     def progress(self):
