@@ -102,7 +102,7 @@ class CpmBonds(BondLog):
         self._prepare()
 
     def _take_up(self, numbers):
-        self.dissipated[numbers] = self.by_slip[numbers] = 0.0
+        self.dissipated[numbers] = self.by_slip[numbers] = self.slip_taken[numbers] = 0.0
         self._follow(numbers)
 
     def _follow(self, numbers):

@@ -1,4 +1,5 @@
 """The steady cut: a tool on a straight way through a rock mass without end, of which a window moves along with it."""
+import math
 from types import SimpleNamespace
 
 import numpy as np
@@ -36,6 +37,8 @@ STEADY = Group("motion", (
     Parameter("cut_length", 0.1, "m", above_zero, "way of the tool"),
     Parameter("ramp_length", 5e-3, "m", number(0), "way on which the tool comes to its velocity, from a groove that "
               "fits it"),
+    Parameter("begin_angle", 20.0, "deg", number(5, 90), "slope on which the rock rises ahead of the tool at first, as "
+              "behind a chip; 90: as the face of the tool"),
     parameters.DAMPING, *parameters.OTHER_DAMPING))
 GROUPS = [WINDOW, parameters.BONDS, parameters.PLANE_TOOL, parameters.CONTACT, STEADY, parameters.WEAR,
           parameters.HEAT, parameters.ACCURACY]
@@ -60,7 +63,7 @@ def make(values):
                     radius_max=v.radius_max, porosity=v.porosity, seed=v.seed, bonding_gap=v.bonding_gap,
                     grading_factor=v.grading_factor, fine_depth=v.fine_depth, density=v.rock_density)
     path = v.window_height - v.depth_of_cut
-    rock.leave_out(above_groove(rock, outline + [v.window_behind, path], path))
+    rock.leave_out(above_groove(rock, outline + [v.window_behind, path], path, math.radians(v.begin_angle)))
     programme = SteadyCut(
         velocity=v.velocity * v.time_scale, cut_length=v.cut_length, ramp_length=v.ramp_length,
         start=(v.window_behind, path), depth_of_cut=v.depth_of_cut,
@@ -86,15 +89,19 @@ def check_window(v):
     require(v.cut_length > v.ramp_length, "cut_length", v.cut_length, f"more than ramp_length = {v.ramp_length:g}", "m")
 
 
-def above_groove(rock, outline, path):
-    """(n,) bool: particles of the rock that reach above the way of the tool at y = `path` (m) behind its front.
+def above_groove(rock, outline, path, slope):
+    """(n,) bool: particles of the rock that reach above the way of the tool at y = `path` (m) behind its front, or
+    above a plane that rises from its tip.
 
-    outline: (k, 2) m, the tool where it begins.
+    outline: (k, 2) m, the tool where it begins; slope: rad, of the plane.
     """
     (x, y), r = rock.positions.T, rock.radii
     heights = np.linspace(-1.0, 1.0, 9)[:, None] * r + y
     front = np.where(heights > path, reach(outline, np.maximum(heights, path)), -np.inf).max(axis=0)
-    return (y + r > path) & (x - r < front)
+    tip = float(outline[np.argmin(outline[:, 1]), 0])
+    # How far a disc reaches above the plane.
+    over = (y - path) * math.cos(slope) - (x - tip) * math.sin(slope) + r
+    return (y + r > path) & ((x - r < front) | (over > 0))
 
 
 class SteadyCut(Programme):
