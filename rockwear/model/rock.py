@@ -20,6 +20,8 @@ TILE = 8000
 """Particles above which a specimen is put together from periodic tiles."""
 UNBREAKABLE = 1e30
 """Strength (N) of the bonds within a grain."""
+NEVER_TURNS = 1e9
+"""Moment of inertia of particles that do not turn, over their own."""
 SCATTER_LIMITS = 0.05, 5.0
 """Least and largest strength over the mean one where strengths scatter."""
 BORDER, INSIDE = 4.0, 10
@@ -189,6 +191,10 @@ class RockAssembly:
         self.laws = [inner if inside else scaled[size] for size, inside in zip(sizes.tolist(), within)]
         if law.yade_law == "Cpm":
             self._clear_overlaps()
+
+    def hold_turning(self):
+        """Make the particles so hard to turn that they do not."""
+        self.inertias = NEVER_TURNS * self.inertias
 
     def _clear_overlaps(self):
         """Reduce radii until no bonded particles overlap; masses stay. YADE's concrete model erases a bond that breaks,
