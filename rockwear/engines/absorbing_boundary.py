@@ -46,13 +46,12 @@ class AbsorbingBoundary(Engine):
         # YADE does not save permanent forces.
         self._set_forces(range(len(self.numbers)))
 
-    def hold(self, numbers, normals, areas, distances, forces=None):
+    def hold(self, numbers, normals, areas, distances, displacements=0.0):
         """Hold these particles (k,) where they are now.
 
         normals (k, 2): outwards; areas (k,) m2 of the boundary that each stands for; distances (k,) m from the load;
-        forces (k, 2) N: what the rock that is no longer there exerted on each, 0 by default. A particle may come twice,
-        for two faces at right angles. If it is held already, what its springs exerted becomes a constant force. Raises
-        ParameterError.
+        displacements (k, 2) m: of each from where its springs are at rest. A particle may come twice, for two faces at
+        right angles. If it is held already, what its springs exerted becomes a constant force. Raises ParameterError.
         """
         numbers, given = np.asarray(numbers, int), np.asarray(normals, float)
         require(given.shape == (len(numbers), 2), "normals", f"array of shape {given.shape}", "of shape (k, 2)")
@@ -64,9 +63,7 @@ class AbsorbingBoundary(Engine):
         along = np.abs(np.sum(given * normals[which], axis=1)) > np.sqrt(0.5) * np.linalg.norm(given, axis=1)
         total = [np.bincount(which, np.where(along, one, other), len(held)) for one, other in (
             constants[0:2], constants[1::-1], constants[2:4], constants[3:1:-1])]
-        exerted = np.zeros((len(held), 2))
-        if forces is not None:
-            np.add.at(exerted, which, forces)
+        exerted = self._springs(np.broadcast_to(displacements, given.shape)[first], normals, *total[:2])
         exerted += self._let_go(held)
         start = len(self.numbers)
         states = self._states(held)
@@ -149,12 +146,16 @@ class AbsorbingBoundary(Engine):
         """(k, 2) m that the held particles have moved by."""
         return self._states(self.numbers)[:, :2] - self.places
 
+    @staticmethod
+    def _springs(moved, normals, kn, kt):
+        """(k, 2) N that springs exert on particles that have moved by (k, 2) m."""
+        x, y = normals.T
+        pull, shear = kn * (moved[:, 0] * x + moved[:, 1] * y), kt * (moved[:, 1] * x - moved[:, 0] * y)
+        return -np.column_stack([pull * x - shear * y, pull * y + shear * x])
+
     def _exerted(self):
         """(k, 2) N of springs and constant forces on the held particles."""
-        along, across = self._split(self._moved())
-        x, y = self.normals.T
-        pull, shear = self.kn * along, self.kt * across
-        return self.forces - np.column_stack([pull * x - shear * y, pull * y + shear * x])
+        return self.forces + self._springs(self._moved(), self.normals, self.kn, self.kt)
 
     def _energies(self):
         """(k,) J of springs and constant forces."""

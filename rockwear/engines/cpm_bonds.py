@@ -44,6 +44,14 @@ _Contact = namedtuple("_Contact", "interaction geom phys slipped shear_force")
 """A bond in YADE, with epsTPl and shearForce. YADE gives these by reference: they are what they are now at any time."""
 
 
+def _turn(contact):
+    """Turn the slipped part of the strain into the plane of the contact: the total strain less the elastic one."""
+    phys, slipped = contact.phys, contact.slipped
+    elastic = _in_plane(contact.shear_force, contact.geom.normal) / (-phys.ks * phys.refLength)
+    # In place: this is YADE's own vector.
+    slipped += phys.epsT - elastic - slipped
+
+
 class CpmBonds(BondLog):
     """All bonds of the rock under a law that YADE's concrete model (Law2_ScGeom_CpmPhys_Cpm) is.
 
@@ -166,18 +174,10 @@ class CpmBonds(BondLog):
         if omega > omega_before:
             self._dissipate(n, law.dissipated(min(omega, 1.0)) - law.dissipated(omega_before), False)
         if omega < 1.0:
-            self._turn(contact)
+            _turn(contact)
             self._keep(n, contact)
         else:
             self._break(n, contact)
-
-    @staticmethod
-    def _turn(contact):
-        """Turn the slipped part of the strain into the plane of the contact: the total strain less the elastic one."""
-        phys, slipped = contact.phys, contact.slipped
-        elastic = _in_plane(contact.shear_force, contact.geom.normal) / (-phys.ks * phys.refLength)
-        # In place: this is YADE's own vector.
-        slipped += phys.epsT - elastic - slipped
 
     def _dissipate(self, n, work, by_slip):
         self.dissipated[n] += work
@@ -222,7 +222,7 @@ class CpmBonds(BondLog):
             if omega:
                 contact.phys.setDamage(omega)
             if contact.slipped != slipped:
-                self._turn(contact)
+                _turn(contact)
                 self._keep(n, contact)
         self._prepare()
 

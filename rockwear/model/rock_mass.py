@@ -17,6 +17,8 @@ RIM = 6
 MISFIT = 5e-3
 """Parts of the sum of two radii by which their distance may differ from that in untouched rock to be bonded: a crack
 that opens so far has released all force."""
+WHOLE = 0.05
+"""Parts of its radius by which a particle of uncracked rock at the end of the window may be displaced."""
 PARKED = 3.0
 """Particles that are not in the rock yet stand so many heights of the window below it, and their largest diameters
 apart."""
@@ -133,23 +135,26 @@ class RockMass(RockAssembly):
     def fit(self, moved, positions):
         """Fit the slab that enters to the rock that is there. positions: (n, 2) m, where that is now.
 
-        Rock at the end of the window is displaced by the cut: the slab enters displaced as much, in the mean. A crack
-        may have reached the end, and chips may lie beyond it. Bonds that would be made longer or shorter than in
-        untouched rock by more than MISFIT are left out, and what the slab would overlap by more than that is absent
-        from now on.
+        Rock at the end of the window is displaced by the cut: the slab enters displaced as much, by a line fitted over
+        the height. A crack may have reached the end, and chips may lie beyond it. Bonds that would be made longer or
+        shorter than in untouched rock by more than MISFIT are left out, and what the slab would overlap by more than
+        that is absent from now on.
 
-        -> (2,) m of the slab's displacement; bonds (m,) bool that are made; numbers (l,) of the particles in the way.
+        -> (k, 2) m of the slab's displacement; bonds (m,) bool that are made; numbers (l,) of the particles in the way.
         """
         i, j = self.pairs.T
         new = np.isin(np.arange(self.count), moved)
         made = self.bonded & (new[i] | new[j])
         joining = np.unique(self.pairs[made & (new[i] ^ new[j])])
         joining = joining[~new[joining]]
-        places = self.places
+        places, displacement = self.places, np.zeros((len(moved), 2))
         off = positions[joining] - places[joining]
-        whole = np.linalg.norm(off, axis=1) < MISFIT * self.radii[joining]
-        offset = off[whole].mean(axis=0) if whole.any() else np.zeros(2)
-        now = np.where(new[:, None], places + offset, positions)
+        whole = np.linalg.norm(off, axis=1) < WHOLE * self.radii[joining]
+        if whole.mean() > 0.5:
+            line = np.polynomial.polynomial.polyfit(places[joining[whole], 1], off[whole], 1)
+            displacement = np.polynomial.polynomial.polyval(places[moved, 1], line).T
+        now = positions.copy()
+        now[moved] = places[moved] + displacement
         misfit = np.linalg.norm(now[i] - now[j], axis=1) - self.bond_lengths
         made &= abs(misfit) <= MISFIT * (self.radii[i] + self.radii[j])
         overlapping = packing.contacts(now, self.radii, -MISFIT * float(self.radii.min()))
@@ -157,7 +162,7 @@ class RockMass(RockAssembly):
         joined = np.isin(a * self.count + b, self.pairs[made] @ [self.count, 1])
         in_the_way = np.unique(np.where(new[a], b, a)[~joined])
         self.absent[in_the_way] = True
-        return offset, made & ~self.absent[self.pairs].any(axis=1), in_the_way
+        return displacement, made & ~self.absent[self.pairs].any(axis=1), in_the_way
 
     def moduli(self):
         """kernels.elastic_moduli.Moduli of the bonded packing."""

@@ -4,6 +4,7 @@ from yade import O, Quaternion, Vector3
 
 from rockwear.engines.access import rock_states
 from rockwear.engines.bond_log import INTACT
+from rockwear.model.rock_mass import WHOLE
 from rockwear.scenes import yade_scene
 
 FREE = "zXY"
@@ -13,9 +14,8 @@ HELD = "xyzXYZ"
 class FixedBoundary:
     """Particles at the ends of the window that do not move: a rigid wall, which reflects every wave."""
 
-    def hold(self, numbers, normals, areas, distances):
-        """Hold these particles (k,); normals (k, 2), areas (k,) m2 and distances (k,) m of the load count for nothing
-        here."""
+    def hold(self, numbers, normals, areas, distances, displacements):
+        """Hold these particles (k,); all else counts for nothing here, see AbsorbingBoundary."""
         for n in numbers.tolist():
             state = O.bodies[n].state
             state.blockedDOFs, state.vel, state.angVel = HELD, Vector3.Zero, Vector3.Zero
@@ -71,10 +71,10 @@ class RockWindow:
         if self.sides:
             self.boundary.let_go(self.held)
         moved = rock.advance()
-        offset, made, in_the_way = rock.fit(moved, positions)
+        displacement, made, in_the_way = rock.fit(moved, positions)
         bottom = moved[rock.anchored[moved]]
         self.boundary.let_go(bottom)
-        self._put(moved, rock.places[moved] + offset, FREE)
+        self._put(moved, rock.places[moved] + displacement, FREE)
         self._put(in_the_way, rock.places[in_the_way], HELD)
         # YADE's loop would find contacts of supports anew, as of rock.
         O.interactions.eraseNonReal()
@@ -82,8 +82,7 @@ class RockWindow:
         made = np.flatnonzero(made)
         self.cleared += len(in_the_way)
         self.missed += int(np.sum(left & rock.bonded)) - len(made)
-        yade_scene.bond_again(rock, made)
-        scene.skip_step()
+        scene.skip(yade_scene.bond_again(rock, made))
         bonds.renew(np.flatnonzero(left), made)
         self._hold_bottom(bottom)
         self._hold_sides()
@@ -119,7 +118,10 @@ class RockWindow:
         radii = self.rock.radii
         areas = length * radii[numbers] / radii[face].sum()
         count = len(numbers)
-        self.boundary.hold(numbers, np.tile(normal, (count, 1)), areas, np.full(count, distance))
+        # Springs are at rest in untouched rock, unless a crack has moved it.
+        moved = (rock_states(self.rock)[:, :2] - self.rock.places)[numbers]
+        moved[np.linalg.norm(moved, axis=1) > WHOLE * radii[numbers]] = 0.0
+        self.boundary.hold(numbers, np.tile(normal, (count, 1)), areas, np.full(count, distance), moved)
 
     def state(self):
         """What a restart needs."""

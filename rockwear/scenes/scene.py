@@ -60,11 +60,11 @@ class Scene(ABC):
             engine.last_iteration = O.iter - 1
             engine.connect()
 
-    def skip_step(self):
-        """A step of no length has been made, which no clock counts."""
-        self.first_iteration += 1
+    def skip(self, steps):
+        """So many steps of no length have been made, which no clock counts."""
+        self.first_iteration += steps
         for engine in self.engines:
-            engine.last_iteration += 1
+            engine.last_iteration += steps
 
     # ---- stages
 

@@ -149,24 +149,27 @@ def make_bonds(rock, bonds):
 
 
 def bond_again(rock, numbers):
-    """Bond these pairs (k,) of the rock in a scene that runs, stress-free as they lie: one step of no length, in which
-    nothing moves and no engine of ours is called."""
+    """Bond these pairs (k,) of the rock in a scene that runs, stress-free as they lie: steps of no length, in which
+    nothing moves and no engine of ours is called. -> how many."""
     ends = np.unique(rock.pairs[numbers]).tolist()
     bonding, loose = O.materials["bonding rock"], O.materials["loose rock"]
     interactions, time_step, engines = access.yade_engine(InteractionLoop), O.dt, O.engines
     cohesive = [access.parameter_functor(Ip2_JCFpmMat_JCFpmMat_JCFpmPhys),
                 access.parameter_functor(Ip2_CpmMat_CpmMat_CpmPhys)]
+    O.engines, O.dt = [ForceResetter(), interactions], 0.0
+    # YADE's loop cannot make a contact in a loaded scene before its first step.
+    O.step()
     for body in ends:
         O.bodies[body].mat = bonding
     cohesive[0].cohesiveTresholdIteration = cohesive[1].cohesiveThresholdIter = -1
     for i, j in rock.pairs[numbers].tolist():
         utils.createInteraction(i, j)
     cohesive[0].cohesiveTresholdIteration, cohesive[1].cohesiveThresholdIter = BONDING
-    O.engines, O.dt = [ForceResetter(), interactions], 0.0
     O.step()
     O.engines, O.dt = engines, time_step
     for body in ends:
         O.bodies[body].mat = loose
+    return 2
 
 
 def finite_disc(position, radius, *, material, mask, mass, inertia):

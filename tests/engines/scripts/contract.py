@@ -404,10 +404,11 @@ class Spinning(World):
         radius = 13.5e-3
         places = 0.95 * radius / math.sqrt(2) * np.array([(1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1)])
         masses = np.full(4, 2500 * 4 / 3 * math.pi * radius**3)
-        self.rock = SimpleNamespace(count=4, positions=places, radii=np.full(4, radius), masses=masses,
+        pairs = contacts(places, np.full(4, radius), 0.0)
+        self.rock = SimpleNamespace(count=4, positions=places, places=places,
+                                    bonded=np.ones(len(pairs), bool), radii=np.full(4, radius), masses=masses,
                                     inertias=0.4 * masses * radius**2, fixed=np.zeros(4, bool), laws=None,
-                                    side=np.zeros(4, int),
-                                    pairs=contacts(places, np.full(4, radius), 0.0))
+                                    side=np.zeros(4, int), pairs=pairs)
 
     def _engines(self):
         return [ShearRotation(bonds=self.bonds, radii=self.rock.radii), self.bonds, self.rock_friction]

@@ -46,7 +46,8 @@ def arranged(positions, radii=D / 2, pairs=None, fixed=()):
     is_fixed[list(fixed)] = True
     masses = 2500 * np.pi * radii**2
     pairs = contacts(positions, radii, 1e-9) if pairs is None else np.reshape(pairs, (-1, 2)).astype(int)
-    return SimpleNamespace(positions=positions, radii=radii, count=count, fixed=is_fixed, side=np.zeros(count, int),
+    return SimpleNamespace(positions=positions, places=positions, radii=radii, count=count, fixed=is_fixed,
+                           bonded=np.ones(len(pairs), bool), side=np.zeros(count, int),
                            masses=masses, inertias=0.5 * masses * radii**2, pairs=pairs)
 
 

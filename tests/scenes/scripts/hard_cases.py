@@ -54,10 +54,11 @@ def lattice():
                        for row in range(ROWS) for column in range(COLUMNS)])
     count = len(places)
     masses = np.full(count, 2500 * math.pi * RADIUS**2)
-    return SimpleNamespace(count=count, positions=places, radii=np.full(count, RADIUS), masses=masses,
+    pairs = contacts(places, np.full(count, RADIUS), 1e-6 * RADIUS)
+    return SimpleNamespace(count=count, positions=places, places=places,
+                           bonded=np.ones(len(pairs), bool), radii=np.full(count, RADIUS), masses=masses,
                            inertias=0.5 * masses * RADIUS**2, fixed=np.zeros(count, bool),
-                           side=np.zeros(count, int),
-                           pairs=contacts(places, np.full(count, RADIUS), 1e-6 * RADIUS))
+                           side=np.zeros(count, int), pairs=pairs)
 
 
 def bonded(rock, law, looks=1, **loop):
