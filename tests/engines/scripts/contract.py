@@ -351,9 +351,9 @@ class Absorbing(World):
         self.boundary = AbsorbingBoundary(moduli=Moduli(2e10, 0.2, 2e10 / 2.4), density=2500.0, period=3)
         return [self.bonds, self.boundary, self.rock_friction]
 
-    def _hold(self, numbers, normal, forces=None):
+    def _hold(self, numbers, normal, displacements=0.0):
         count = len(numbers)
-        self.boundary.hold(numbers, [normal] * count, np.full(count, 2 * RADIUS), np.full(count, 8e-3), forces)
+        self.boundary.hold(numbers, [normal] * count, np.full(count, 2 * RADIUS), np.full(count, 8e-3), displacements)
 
     def _begin(self):
         for i in range(self.rock.count):
@@ -362,7 +362,7 @@ class Absorbing(World):
 
     def event(self, last):
         if last:
-            self._hold([0, 8, 16], (-1, 0), [(1e3, 0.0)] * 3)
+            self._hold([0, 8, 16], (-1, 0), [(1e-7, 0.0)] * 3)
         else:
             self._hold([7, 15, 23], (1, 0))
             self.boundary.let_go([1, 3, 5])
