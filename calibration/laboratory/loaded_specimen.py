@@ -32,7 +32,6 @@ from rockwear.scenes.scene import Scene
 LOADING = (
     Parameter("speed", 0.05, "m/s", speed, "of each platen", "make bench; [Rojek 2003, 5.1] has 0.001"),
     Parameter("platens", "smooth", "", choice("smooth", "rough"), "rough: ends held across and against turning"),
-    Parameter("rotation", "free", "", choice("free", "blocked"), "of all particles; blocked: none ever turns"),
     Parameter("grip", 0.0, "m", number(0), "particles with their centres so near an end move with it; 0: a "
               "largest diameter"),
     Parameter("damping", 0.3, "", number(0, 0.95), "Cundall's non-viscous damping", "measured, see UniaxialTest"),
@@ -192,12 +191,12 @@ class SpecimenTest(Scene):
         self.canonical()
 
     def _hold_ends(self):
-        rough, blocked = self.v.platens == "rough", self.v.rotation == "blocked"
+        rough = self.v.platens == "rough"
         across, turns, never = ("y", "Z", "zXY") if self.rock.depth is None else ("yz", "XYZ", "")
         for i, prescribed in enumerate(self.prescribed):
             state = O.bodies[i].state
             state.blockedDOFs = never + ("x" if prescribed else "") + (across if prescribed and rough else "") + (
-                turns if blocked or prescribed and rough else "")
+                turns if prescribed and rough else "")
             if prescribed:
                 # YADE would count what it damps of a motion that is prescribed.
                 state.isDamped = False
@@ -217,8 +216,7 @@ class SpecimenTest(Scene):
         self.bonds = yade_scene.bonds_engine(rock, self.law, lambda: self.time)
         if rock.depth is not None:
             self.bonds.period = min(self.bonds.period, LOOK_IN_SPACE)
-        inertias = np.full(rock.count, np.inf) if v.rotation == "blocked" else rock.inertias
-        motion = VelocityIncrement(masses=rock.masses, inertias=inertias, radii=rock.radii, fixed=self.prescribed)
+        motion = VelocityIncrement(masses=rock.masses, inertias=rock.inertias, radii=rock.radii, fixed=self.prescribed)
         self.rock_friction = RockFriction(bonds=self.bonds, motion=motion, period=v.rock_sampling_period)
         self.platens = Platens(left=self.left.tolist(), right=self.right.tolist(), velocity=self.sign * v.speed,
                                period=min(row, v.rock_sampling_period))

@@ -192,8 +192,8 @@ class RockAssembly:
         if law.yade_law == "Cpm":
             self._clear_overlaps()
 
-    def hold_turning(self):
-        """Make the particles so hard to turn that they do not."""
+    def block_rotation(self):
+        """Make the particles so hard to turn that they never do."""
         self.inertias = NEVER_TURNS * self.inertias
 
     def _clear_overlaps(self):

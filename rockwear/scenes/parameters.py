@@ -47,8 +47,8 @@ BOND_PARAMETERS = (
     Parameter("bonding_gap", 1e-4, "m", number(0), "largest gap that is bonded",
               "[Rojek 2014, eq. 6]; the value is ours", size_power=(1, 1)),
     Parameter("weibull_modulus", 0.0, "", number(0), "of the scatter of bond strengths about their mean; 0: none"),
-    Parameter("turning", True, "", flag, "whether particles of the rock turn; false: they interlock as grains do, in "
-              "the crudest way"),
+    Parameter("rotation", "free", "", choice("free", "blocked"), "of the rock's particles; blocked: none ever turns, "
+              "they interlock as grains do in the crudest way"),
     Parameter("grain_edge", 0.0, "m", number(0), "mean edge of grains, Voronoi cells of particles whose bonds do not "
               "break; 0: no grains", "[Bahaaddini 2018, sec. 2]", size_power=(1, 1)),
     Parameter("grain_kn", 0.0, "N/m", number(0), "normal stiffness of bonds within a grain; 0: kn", size_power=(0, 1)),

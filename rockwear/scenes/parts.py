@@ -30,8 +30,8 @@ def bond(rock, v):
     """Give the rock's bonds their laws. -> the rock."""
     law, values = bond_law(v), vars(v)
     if "bond_law" in values:
-        if not v.turning:
-            rock.hold_turning()
+        if v.rotation == "blocked":
+            rock.block_rotation()
         rock.bond(law, grain_edge=v.grain_edge, within_grains=(v.grain_kn or law.kn, v.grain_kt or law.kt),
                   weibull_modulus=v.weibull_modulus, seed=v.seed)
     return rock
