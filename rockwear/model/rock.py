@@ -64,6 +64,8 @@ class RockAssembly:
 
     laws = grains = None
     """(m,) law of each bond; (n,) number of the grain of each particle, where the rock has grains."""
+    frame = np.zeros(3)
+    """m, the origin of what pictures show."""
     period = None
     """(2,) m with which the rock repeats itself along x, None where it does not."""
 
@@ -108,13 +110,8 @@ class RockAssembly:
         """(n, d) m of the particles as the scene begins."""
         return self.positions
 
-    @property
-    def frame(self):
-        """(d,) m, the origin of what pictures show."""
-        return np.zeros(self.dimensions)
-
     def shown(self, positions):
-        """Places (n, d) m in that frame of particles at `positions` (n, d) m; nan for those that are not there."""
+        """Places (n, d) m in pictures of particles at `positions` (n, d) m; nan for those that are not there."""
         return positions
 
     @property

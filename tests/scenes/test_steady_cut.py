@@ -13,7 +13,7 @@ SMALL = dict(window_behind=0.016, window_ahead=0.048, window_height=0.026, radiu
              tool_kn=2e10, tool_kt=2e10, contact_damping=0.2, ramp_length=2e-3, cut_length=0.02, report="false")
 """A steady cut in miniature."""
 LAWS = {"brittle": {},
-        "softening": dict(bond_law="cohesive", kt=8e9, grain_edge=2.5e-3, weibull_modulus=4, heat="true")}
+        "softening": dict(bond_law="cohesive", kt=8e9, rotation="blocked", mu=0.3, weibull_modulus=4, heat="true")}
 
 
 def steady_cut(out, *flags, **values):
@@ -31,8 +31,8 @@ def never(request, tmp_path_factory):
 def test_the_window_moves_and_the_balance_closes(never):
     energy = never.summary["balances"]["energy"]
     assert value(never, "tensile_cracks") > 0
-    # The work of slip in softening bonds is sampled: fewer than 300 of them slip here.
-    part = 0.06 if "bond_law" in never.options else 0.02
+    # The work of slip in softening bonds is sampled: few of them slip here.
+    part = 0.03 if "bond_law" in never.options else 0.02
     assert abs(energy["residual"]) < part * energy["tool_work"]
     assert history(never.out)["distance [m]"][-1] == pytest.approx(SMALL["cut_length"], abs=2e-4)
     assert value(never, "window_passed") >= 4 * (SMALL["window_behind"] + SMALL["window_ahead"]) / 16

@@ -54,15 +54,15 @@ def lattice():
                        for row in range(ROWS) for column in range(COLUMNS)])
     count = len(places)
     masses = np.full(count, 2500 * math.pi * RADIUS**2)
-    pairs = contacts(places, np.full(count, RADIUS), 1e-6 * RADIUS)
-    return SimpleNamespace(count=count, positions=places, places=places,
-                           bonded=np.ones(len(pairs), bool), radii=np.full(count, RADIUS), masses=masses,
+    return SimpleNamespace(count=count, positions=places, radii=np.full(count, RADIUS), masses=masses,
                            inertias=0.5 * masses * RADIUS**2, fixed=np.zeros(count, bool),
-                           side=np.zeros(count, int), pairs=pairs)
+                           side=np.zeros(count, int),
+                           pairs=contacts(places, np.full(count, RADIUS), 1e-6 * RADIUS))
 
 
 def bonded(rock, law, looks=1, **loop):
     """`rock` alone in a new loop, all its pairs bonded. -> its engine of bonds, visited every `looks` steps."""
+    rock.places, rock.bonded = rock.positions, np.ones(len(rock.pairs), bool)
     O.reset()
     yade_scene.put_rock_materials(mu=law.mu, yade_law=law.yade_law)
     yade_scene.put_rock(rock)
