@@ -10,7 +10,7 @@ TO_LINT := python3-flake8
 
 .DEFAULT_GOAL := help
 .PHONY: help setup setup-test run test test-kernels validate bench campaigns campaign-wear campaign-uniaxial \
-        campaign-grains campaign-rocks lint clean
+        campaign-grains campaign-rocks campaign-steady lint clean
 
 # $(call install,packages,modules): the missing packages, where there is apt-get; then each module must be found.
 define install
@@ -73,6 +73,9 @@ campaign-grains: setup ## the Hawkesbury sandstone of grains, and what its stren
 
 campaign-rocks: setup ## what bond laws and rock properties do to a rock, at three resolutions (hours; resumes)
 	$(PYTHON) -m calibration.campaigns.rock_laws $(OUT)/campaign-rocks
+
+campaign-steady: setup ## what makes a steady cut what it is, one cause at a time (hours; resumes)
+	$(PYTHON) -m calibration.campaigns.steady_cut $(OUT)/campaign-steady
 
 lint: ## check the code with flake8
 	$(call install,$(TO_LINT),flake8)

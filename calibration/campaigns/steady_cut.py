@@ -1,0 +1,267 @@
+"""What makes a steady cut what it is: causes one at a time, from a rock whose cut looks like rock.
+
+    python3 -m calibration.campaigns.steady_cut DIR [CASE ...] [--read]
+
+Two runs at a time, a folder a run; finished runs are not repeated, so that an interrupted campaign resumes. --read
+starts no run and evaluates those that exist. Each rock is also crushed in the laboratory, and the base pulled, in the
+same packings. Writes into DIR steady_cut.md (tables), steady_cut.csv, steady_cut.png, steady_cut_forces.png and
+provenance.json.
+"""
+import csv
+import math
+import sys
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+
+from calibration import generated
+from calibration.campaigns.runs import Runs, wait_for
+from rockwear.kernels import steady_record
+from rockwear.kernels.cutting_envelope import expected
+from rockwear.kernels.fragments import chip_length
+from rockwear.kernels.groove import groove_results
+from rockwear.kernels.steady_record import Measured
+from rockwear.report import plane, plots
+from rockwear.report.folder import RunFolder
+from rockwear.report.views import cut, steady
+
+SCRIPT, UNIAXIAL = "yade_scripts/steady_cut.py", "yade_scripts/uniaxial.py"
+BASE = "base"
+SEEDS = 1, 2, 3
+BEGIN = 3
+"""Depths of cut that do not count: the tool has passed the slope at which it begins, which is 2.7 long."""
+LOAD = 0.1
+"""Part of the mean peak above which the tool is under load."""
+
+ROCK = dict(bond_law="cohesive", rotation="blocked", kn=1.29e10, kt=4e9, mu=0.3, bond_tension=9.1e6,
+            bond_cohesion=17.2e6, bond_fracture_energy=28.0, weibull_modulus=2.0, bonding_gap=5e-5)
+CUT = dict(depth_of_cut=5e-3, rake=-5.0, velocity=4.0, tooth_width=8e-3, tooth_height=20e-3, window_behind=0.02,
+           window_ahead=0.044, window_height=0.03, snapshot_period=1e-3, cut_length=0.04)
+DISCS = dict(radius_min=5e-4, radius_max=7.5e-4)
+LONG = 0.06
+"""m of way in the base."""
+BOX = dict(width=0.06, height=0.03)
+"""Of the laboratory, m; loaded along its length."""
+SPEEDS = {"compression": 0.04, "tension": 0.02}
+"""Of each platen, m/s."""
+
+ROCKS = {
+    BASE: ROCK,
+    "rotation free": dict(ROCK, rotation="free"),
+    "fracture energy 3": dict(ROCK, bond_fracture_energy=3.0),
+    "no scatter": dict(ROCK, weibull_modulus=0.0),
+    "friction 0.5": dict(ROCK, mu=0.5, bond_cohesion=13e6),
+    "medium sandstone": dict(rock="medium_sandstone"),
+    "fracture energy 100": dict(ROCK, bond_fracture_energy=100.0),
+    "Weibull modulus 4": dict(ROCK, weibull_modulus=4.0),
+    "p sandstone": dict(rock="p_sandstone"),
+}
+"""Rocks that are cut as the base is."""
+CUTS = {
+    "boundary fixed": dict(boundary="fixed"),
+    "velocity 8 m/s": dict(velocity=8.0),
+    "blow on a face": dict(begin_angle=90.0),
+    "velocity 1 m/s": dict(velocity=1.0, cut_length=0.03, snapshot_period=4e-3),
+    "depth 2.5 mm": dict(depth_of_cut=2.5e-3, cut_length=0.02, window_behind=0.01, window_ahead=0.022,
+                         window_height=0.015, tooth_width=4e-3, tooth_height=0.01),
+    "depth 10 mm": dict(depth_of_cut=0.01, cut_length=0.08, window_behind=0.04, window_ahead=0.088,
+                        window_height=0.06, tooth_width=0.016, tooth_height=0.04),
+    "boundary free": dict(boundary="free"),
+    "damping 0": dict(background_damping=0.0),
+    "damping 5000 1/s": dict(background_damping=5e3),
+    "rake 10°": dict(rake=10.0),
+    "rake -15°": dict(rake=-15.0),
+    "window doubled": dict(window_behind=0.04, window_ahead=0.088, window_height=0.06),
+    "discs halved": dict(radius_min=2.5e-4, radius_max=3.75e-4),
+}
+"""How else the base rock is cut."""
+CASES = [BASE, *[name for name in ROCKS if name != BASE], *CUTS]
+
+COLUMNS = {"specific energy / UCS": "energy", "mean Fc, kN/m": "force", "peak / mean": "peaks",
+           "overbreak / depth": "overbreak", "chip length / depth": "chip", "thrust / cutting": "thrust",
+           "friction work, kN/m": "friction", "way under load": "loaded", "work in bonds": "bonds"}
+"""{heading: quantity}."""
+
+
+def slug(*words):
+    """Name of a folder."""
+    return "-".join("".join(c if c.isalnum() or c in "-." else "_" for c in str(word)) for word in words)
+
+
+def rock_of(case):
+    """The rock that a case cuts."""
+    return case if case in ROCKS else BASE
+
+
+def cut_of(case, seed):
+    """Parameters of a cut."""
+    longer = {"cut_length": LONG} if case == BASE else {}
+    return {**DISCS, **CUT, **longer, **ROCKS[rock_of(case)], **CUTS.get(case, {}), "seed": seed, "report": "false"}
+
+
+def test_of(rock, test, seed):
+    """Parameters of a laboratory test."""
+    return {**DISCS, **BOX, **ROCKS[rock], "test": test, "speed": SPEEDS[test], "seed": seed, "snapshot_period": 1,
+            "report": "false"}
+
+
+def plan(cases):
+    """{folder: (script, parameters)}, the base and one packing of each case first."""
+    found = {}
+    for case, seed in sorted(((case, seed) for seed in SEEDS for case in cases),
+                             key=lambda job: (job[0] != BASE, job[1], CASES.index(job[0]))):
+        rock = rock_of(case)
+        found[f"cut/{slug(case, seed)}"] = SCRIPT, cut_of(case, seed)
+        for test in SPEEDS if rock == BASE else ["compression"]:
+            found[f"lab/{slug(rock, test, seed)}"] = UNIAXIAL, test_of(rock, test, seed)
+    return found
+
+
+def runs_of(folder, *words):
+    """[RunFolder] of the packings that exist."""
+    places = [folder / slug(*words, seed) for seed in SEEDS]
+    return [RunFolder(place) for place in places if (place / "summary.json").exists()]
+
+
+def strengths(folder, rock, test="compression"):
+    """(k,) Pa, of the packings that exist."""
+    name = {"compression": "peak_stress", "tension": "tensile_strength"}[test]
+    return np.array([run.result(name) for run in runs_of(folder / "lab", rock, test)])
+
+
+def of_run(run):
+    """{quantity: Measured} of one cut, from BEGIN depths of cut on."""
+    depth = run.parameter("depth_of_cut")
+    begin = BEGIN * depth
+    distance, cutting, thrust, friction = (run.column(name) for name in (
+        "distance", "cutting_force", "thrust_force", "tool_friction"))
+    total, pressed = (steady_record.integral(distance, force) for force in (cutting, thrust))
+    mean = steady_record.mean(distance, total, begin)
+    peaks = steady_record.peaks(distance, cutting, depth=depth, begin=begin)
+    spacing = np.ptp(peaks.distance) / (len(peaks.force) - 1) if len(peaks.force) > 1 else math.nan
+    x, height = run.table("groove.csv", "x", "height")
+    groove = groove_results(x=x[x > begin], height=height[x > begin], chip=float(spacing))
+    way, particles, area, length = run.table("chips.csv", "distance", "particles", "area", "length")
+    late = way > begin
+    chip = chip_length(particles=particles[late], area=area[late], length=length[late])
+    overbreak = Measured(groove["overbreak"][0], groove["overbreak_standard_error"][0])
+    energy = run.balances["energy"]
+    loaded = steady_record.integral(distance, cutting > LOAD * peaks.mean().value)
+    return {"force": scaled(mean, 1e-3), "energy": scaled(mean, 1 / depth), "peak": scaled(peaks.mean(), 1e-3),
+            "peaks": steady_record.quotient(peaks.mean(), mean), "overbreak": scaled(overbreak, 1 / depth),
+            "chip": scaled(chip, 1 / depth), "thrust": steady_record.ratio(distance, pressed, total, begin),
+            "friction": scaled(steady_record.mean(distance, friction, begin), 1e-3),
+            "loaded": steady_record.mean(distance, loaded, begin),
+            "bonds": Measured(energy["bond_breaking"] / energy["tool_work"], math.nan)}
+
+
+def scaled(measured, factor):
+    """A Measured in another unit."""
+    return Measured(measured.value * factor, measured.standard_error * factor)
+
+
+def over_packings(values):
+    """Measured mean of [Measured], one a packing: its error from the scatter of three or more, else from their own."""
+    known = [one for one in values if math.isfinite(one.value)]
+    if not known:
+        return steady_record.UNKNOWN
+    if len(known) > 2:
+        return steady_record.sample_mean([one.value for one in known])
+    return Measured(float(np.mean([one.value for one in known])),
+                    math.sqrt(sum(one.standard_error**2 for one in known)) / len(known))
+
+
+def of_case(folder, case):
+    """{quantity: Measured}, with the number of packings and minutes per metre; None without a run."""
+    runs = runs_of(folder / "cut", case)
+    if not runs:
+        return None
+    each = [of_run(run) for run in runs]
+    found = {name: over_packings([one[name] for one in each]) for name in each[0]}
+    ucs = strengths(folder, rock_of(case))
+    found["ucs"] = steady_record.sample_mean(1e-6 * ucs)
+    found["specific_energy"] = scaled(found["energy"], 1e-6)
+    found["energy"] = scaled(found["energy"], 1e-6 / found["ucs"].value)
+    way = [run.parameter("cut_length") + run.parameter("ramp_length") for run in runs]
+    minutes = [run.summary["wall_time"]["total"] / 60 for run in runs]
+    return {**found, "packings": len(runs), "cost": sum(minutes) / sum(way),
+            "way": sum(run.parameter("cut_length") / run.parameter("depth_of_cut") - BEGIN for run in runs)}
+
+
+def shown(measured):
+    """Value ± standard error."""
+    if not math.isfinite(measured.value):
+        return "–"
+    error = measured.standard_error
+    return f"{measured.value:.2g}" + (f" ± {error:.1g}" if math.isfinite(error) else "")
+
+
+def causes(found):
+    """Lines: a row a case."""
+    return generated.table(
+        ["", "packings", "depths cut", "UCS, MPa", *COLUMNS, "minutes per metre"],
+        [[case, row["packings"], f"{row['way']:.0f}", shown(row["ucs"]),
+          *(shown(row[name]) for name in COLUMNS.values()), f"{row['cost']:.0f}"] for case, row in found.items()])
+
+
+def envelope(folder, row):
+    """Lines: the base, judged."""
+    ucs, tension = (strengths(folder, BASE, test) for test in SPEEDS)
+    if not len(ucs) or not len(tension):
+        return []
+    depth = CUT["depth_of_cut"]
+    ranges = expected(compressive_strength=ucs.mean(), tensile_strength=tension.mean(), depth=depth,
+                      rake=math.radians(CUT["rake"]))
+    ours = {"mean_cutting_force": (row["force"], 1e-3, "kN/m"), "peak_over_mean": (row["peaks"], 1, ""),
+            "mean_peak_cutting_force": (row["peak"], 1e-3, "kN/m"),
+            "overbreak": (row["overbreak"], 1 / depth, "depths"),
+            "specific_energy": (row["specific_energy"], 1e-6, "MJ/m³")}
+    lines = [[one.observable.replace("_", " "), f"{low:.3g} to {high:.3g} {unit}", one.basis, shown(measured),
+              one.verdict(measured.value / factor, measured.standard_error / factor)]
+             for one in ranges for measured, factor, unit in [ours[one.observable]]
+             for low, high in [(one.low * factor, one.high * factor)]]
+    return generated.table(["base", "range", "basis", "ours", "verdict"], lines)
+
+
+def write(folder):
+    """Tables and figures of all runs that exist. -> the tables, in Markdown."""
+    found = {case: row for case in CASES if (row := of_case(folder, case))}
+    files = [folder / "steady_cut.csv"]
+    lines = ["## Causes, one at a time", "", f"Mean ± standard error: of the packings where there are three, else of "
+             f"the cuts' own records, from {BEGIN} depths of cut on. Way under load: part of the way with a cutting force "
+             f"above {LOAD:g} of the mean peak. Work in bonds: part of the tool's work that bonds take. Minutes on a "
+             "shared core.", "", *causes(found)]
+    if BASE in found:
+        lines += ["## The base against the envelope", "", *envelope(folder, found[BASE])]
+        run = runs_of(folder / "cut", BASE)[0]
+        with matplotlib.rc_context(plots.STYLE):
+            for name, figure in (("steady_cut.png", cut.figure(run, plane.cut_limits(run))),
+                                 ("steady_cut_forces.png", steady.force_figure(run))):
+                files.append(folder / name)
+                figure.savefig(files[-1])
+    with open(files[0], "w", encoding="utf-8", newline="") as file:
+        csv.writer(file).writerows([["case", "quantity", "mean", "standard error"],
+                                    *([case, name, *value] for case, row in found.items()
+                                      for name, value in row.items() if isinstance(value, Measured))])
+    generated.record(*files)
+    return generated.write_page(folder / "steady_cut.md", lines)
+
+
+def main(folder, words):
+    """-> exit code: 1 where a run failed."""
+    failed = 0
+    if "--read" not in words:
+        with Runs(folder, keep=True) as runs:
+            jobs = {name: runs.start(name, script, **values)
+                    for name, (script, values) in plan(words or CASES).items()}
+            failed = wait_for(jobs, lambda name, run: name)
+    print(write(folder))
+    return failed
+
+
+if __name__ == "__main__":
+    unknown = [word for word in sys.argv[2:] if word not in (*CASES, "--read")]
+    if len(sys.argv) < 2 or unknown:
+        sys.exit(f"usage: python3 -m calibration.campaigns.steady_cut DIR [{'] ['.join(CASES)}] [--read]")
+    sys.exit(main(Path(sys.argv[1]), sys.argv[2:]))

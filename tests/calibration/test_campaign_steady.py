@@ -1,0 +1,84 @@
+"""Campaign of the steady cut: its plan, and means over a record and over packings."""
+import csv
+import json
+import math
+
+import numpy as np
+import pytest
+
+from calibration.campaigns import steady_cut
+from rockwear.kernels.steady_record import Measured
+from rockwear.report.folder import RunFolder
+
+DEPTH, FORCE, THRUST, FRICTION = 5e-3, 30e3, 18e3, 3e3
+
+
+def test_the_plan_changes_one_cause_at_a_time_and_measures_every_rock():
+    plan = steady_cut.plan(steady_cut.CASES)
+    base = steady_cut.cut_of("base", 1)
+    for case in steady_cut.CASES:
+        if case in steady_cut.CUTS:
+            assert {**base, **steady_cut.CUTS[case]}.items() >= steady_cut.ROCK.items()
+        for seed in steady_cut.SEEDS:
+            assert f"cut/{steady_cut.slug(case, seed)}" in plan
+            assert f"lab/{steady_cut.slug(steady_cut.rock_of(case), 'compression', seed)}" in plan
+    script, values = plan["cut/rotation_free-2"]
+    changed = {name for name in values if values[name] != steady_cut.cut_of("base", 2)[name]}
+    assert changed == {"rotation", "cut_length"}
+    assert [name.rpartition("-")[0] for name in plan][:9:3] == ["cut/base"] * 3
+
+
+def test_a_few_packings_have_the_errors_of_their_records_and_three_their_scatter():
+    ones = [Measured(1.0, 0.3), Measured(2.0, 0.4)]
+    assert steady_cut.over_packings(ones) == pytest.approx((1.5, 0.25))
+    three = steady_cut.over_packings([*ones, Measured(6.0, math.nan), Measured(math.nan, math.nan)])
+    assert three == pytest.approx((3.0, math.sqrt(7 / 3)))
+    assert steady_cut.shown(three) == "3 ± 2" and steady_cut.shown(Measured(math.nan, 1.0)) == "–"
+
+
+def test_what_comes_before_the_end_of_the_slope_does_not_count(tmp_path):
+    write_run(tmp_path / "cut/base-1")
+    found = steady_cut.of_run(RunFolder(tmp_path / "cut/base-1"))
+    assert found["force"].value == pytest.approx(1e-3 * FORCE) and found["energy"].value == pytest.approx(FORCE / DEPTH)
+    assert found["thrust"].value == pytest.approx(THRUST / FORCE)
+    assert found["friction"].value == pytest.approx(1e-3 * FRICTION)
+    assert found["overbreak"].value == pytest.approx(0.4) and found["chip"].value == pytest.approx(2.0)
+    assert found["bonds"].value == 0.5
+
+
+def test_specific_energy_is_over_the_strength_of_the_same_rock(tmp_path):
+    write_run(tmp_path / "cut/base-1")
+    for seed, ucs in ((1, 40e6), (2, 60e6)):
+        write(tmp_path / "lab" / f"base-compression-{seed}", {"peak_stress": ucs})
+    row = steady_cut.of_case(tmp_path, "base")
+    assert row["ucs"].value == pytest.approx(50.0) and row["energy"].value == pytest.approx(FORCE / DEPTH / 50e6)
+    assert row["packings"] == 1 and row["way"] == pytest.approx(9) and row["cost"] == pytest.approx(2 / 0.065)
+    assert steady_cut.of_case(tmp_path, "no scatter") is None
+    assert any("| base | 1 | 9 | 50" in line for line in steady_cut.causes({"base": row}))
+
+
+def write(folder, results, **entries):
+    """A made-up summary."""
+    folder.mkdir(parents=True)
+    summary = {"parameters": {"depth_of_cut": DEPTH, "cut_length": 0.06, "ramp_length": 5e-3},
+               "results": {name: {"value": value, "unit": ""} for name, value in results.items()}, **entries}
+    (folder / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
+
+
+def write_run(folder):
+    """A cut with constant forces after the slope, and others before."""
+    write(folder, {}, balances={"energy": {"tool_work": 2.0, "bond_breaking": 1.0}}, wall_time={"total": 120.0})
+    distance = np.linspace(0, 0.06, 601)
+    early = distance < steady_cut.BEGIN * DEPTH
+    rows(folder / "history.csv", "distance cutting_force thrust_force tool_friction", distance,
+         np.where(early, 1e6, FORCE), np.where(early, 1e6, THRUST), FRICTION * distance)
+    rows(folder / "groove.csv", "x height", distance, np.where(early, -0.02, -2e-3))
+    late = ~early[::50]
+    rows(folder / "chips.csv", "distance particles area length", distance[::50], 10 + late, 1e-5 + late,
+         np.where(late, 0.01, 0.05))
+
+
+def rows(path, names, *columns):
+    """A table of columns."""
+    with open(path, "w", encoding="utf-8", newline="") as file:
+        csv.writer(file).writerows([[f"{name} [-]" for name in names.split()], *np.column_stack(columns).tolist()])
