@@ -194,7 +194,7 @@ def shown(measured):
     if not math.isfinite(measured.value):
         return "–"
     error = measured.standard_error
-    return f"{measured.value:.2g}" + (f" ± {error:.1g}" if math.isfinite(error) else "")
+    return f"{measured.value:.3g}" + (f" ± {error:.2g}" if math.isfinite(error) else "")
 
 
 def causes(found):
@@ -229,8 +229,8 @@ def write(folder):
     found = {case: row for case in CASES if (row := of_case(folder, case))}
     files = [folder / "steady_cut.csv"]
     lines = ["## Causes, one at a time", "", f"Mean ± standard error: of the packings where there are three, else of "
-             f"the cuts' own records, from {BEGIN} depths of cut on. Way under load: part of the way with a cutting force "
-             f"above {LOAD:g} of the mean peak. Work in bonds: part of the tool's work that bonds take. Minutes on a "
+             f"the cuts' own records, from {BEGIN} depths of cut on. Way under load: part of the way with a cutting "
+             f"force above {LOAD:g} of the mean peak. Work in bonds: part of the tool's work that bonds take. Minutes on a "
              "shared core.", "", *causes(found)]
     if BASE in found:
         lines += ["## The base against the envelope", "", *envelope(folder, found[BASE])]

@@ -33,7 +33,7 @@ def test_a_few_packings_have_the_errors_of_their_records_and_three_their_scatter
     assert steady_cut.over_packings(ones) == pytest.approx((1.5, 0.25))
     three = steady_cut.over_packings([*ones, Measured(6.0, math.nan), Measured(math.nan, math.nan)])
     assert three == pytest.approx((3.0, math.sqrt(7 / 3)))
-    assert steady_cut.shown(three) == "3 ± 2" and steady_cut.shown(Measured(math.nan, 1.0)) == "–"
+    assert steady_cut.shown(three) == "3 ± 1.5" and steady_cut.shown(Measured(math.nan, 1.0)) == "–"
 
 
 def test_what_comes_before_the_end_of_the_slope_does_not_count(tmp_path):
