@@ -230,8 +230,8 @@ def write(folder):
     files = [folder / "steady_cut.csv"]
     lines = ["## Causes, one at a time", "", f"Mean ± standard error: of the packings where there are three, else of "
              f"the cuts' own records, from {BEGIN} depths of cut on. Way under load: part of the way with a cutting "
-             f"force above {LOAD:g} of the mean peak. Work in bonds: part of the tool's work that bonds take. Minutes on a "
-             "shared core.", "", *causes(found)]
+             f"force above {LOAD:g} of the mean peak. Work in bonds: part of the tool's work that bonds take. "
+             "Minutes on a shared core.", "", *causes(found)]
     if BASE in found:
         lines += ["## The base against the envelope", "", *envelope(folder, found[BASE])]
         run = runs_of(folder / "cut", BASE)[0]
