@@ -15,8 +15,9 @@ TOUGHNESS_SIZE = 64.0
 """Size of a toughness specimen over the mean radius."""
 LEAST = 2
 """Packings below which there is no mean."""
-DEAR, DEAR_PACKINGS = ("triaxial", "toughness"), 3
-"""Tests that take minutes, and the packings that they are made on at most."""
+DEAR, DEAR_PACKINGS = ("triaxial",), 3
+"""Tests that take minutes, and the packings that they are made on at most. Toughness is quicker than compression, and
+scatters by a fifth."""
 
 
 @dataclass(frozen=True)

@@ -64,6 +64,8 @@ def runs_of_a_fit(law="cohesive", **targets):
 def test_a_fit_tests_every_packing_once_and_keeps_the_results_apart():
     runs = runs_of_a_fit()
     assert len(runs.folders) == 2 * len(rock_fit.SMALL.seeds) + DEAR_PACKINGS == len(set(runs.folders))
+    tough = runs_of_a_fit(fracture_toughness=0.9e6).folders
+    assert sum("toughness" in folder for folder in tough) == len(rock_fit.SMALL.seeds)
     assert runs_of_a_fit().folders == runs.folders
     assert not set(runs_of_a_fit("coulomb").folders) & set(runs.folders)
     speeds = {values.get("test"): values["speed"] for _, values in runs.started}
