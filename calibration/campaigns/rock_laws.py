@@ -1,6 +1,6 @@
 """What bond laws and rock properties do to a rock, and whether a rock stays the same as its discs become finer.
 
-    python3 -m calibration.campaigns.rock_laws DIR [laws|resolution|relations ...] [--read]
+    python3 -m calibration.campaigns.rock_laws DIR [laws|resolution|softening|relations ...] [--read]
 
 Two runs at a time, a folder a run; finished runs are not repeated, so that an interrupted campaign resumes. --read
 starts no run and evaluates those that exist. Writes into DIR rock_laws.md (tables), rock_laws.csv, resolution.png,
@@ -28,8 +28,9 @@ ROCK = dict(kn=20e9, kt=8e9, mu=0.8, bond_law="cohesive", bond_tension=7e6, bond
             bond_fracture_energy=30.0)
 """A sandstone to begin with, of softening bonds; all discs of 1 to 1.5 mm."""
 GRAINS = dict(ROCK, grain_edge=3e-3)
-BOX, SMALL_BOX = dict(width=0.08, height=0.04), dict(width=0.06, height=0.03)
-"""Loaded along their length; 650 and 330 discs of 1 to 1.5 mm, the smaller one for the finest discs' sake: 5,600."""
+BOX, SMALL_BOX, LARGE_BOX = (dict(width=2 * height, height=height) for height in (0.04, 0.03, 0.06))
+"""Loaded along their length; 650, 330 and 1,300 discs of 1 to 1.5 mm, the small one for the finest discs' sake: 5,600.
+"""
 SPEED, PULL = 0.04, 0.02
 """Of each platen, m/s."""
 SIZE, SMALL_SIZE = 0.08, 0.04
@@ -74,6 +75,8 @@ CASES = {
     "resolution": ({f"{kind}, r = {radius:g} mm": at_size(values, factor) for kind, values in
                     (("discs", ROCK), ("grains", GRAINS)) for radius, factor in FINENESS.items()},
                    (1, 2, 3, 4, 5), (0.0,)),
+    "softening": ({f"{energy:g} J/m²": dict(ROCK, bond_fracture_energy=energy)
+                   for energy in (30.0, 62.5, 125.0, 250.0)}, (1, 2, 3, 4, 5), (0.0,)),
     "relations": ({f"kt/kn = {ratio:g}, gap {gap:g} mm": dict(ROCK, kt=ratio * 20e9, bonding_gap=1e-3 * gap)
                    for gap in (0.0, 0.1, 0.2) for ratio in (0.05, 0.2, 0.4, 0.7, 1.0)}, (1, 2, 3), (0.0,)),
 }
@@ -87,12 +90,12 @@ HEADS = {"E": "E, GPa", "nu": "ν", "UCS": "UCS, MPa", "tension": "σt, MPa", "r
 def tests(campaign, values, seed):
     """{test: (script, parameters)} of one packing of a rock."""
     confinements, blocked = CASES[campaign][2], values.get("rotation")
-    box, size = (SMALL_BOX, SMALL_SIZE) if campaign == "resolution" else (BOX, SIZE)
+    box, size = {"resolution": (SMALL_BOX, SMALL_SIZE), "softening": (LARGE_BOX, None)}.get(campaign, (BOX, SIZE))
     common = dict(values, seed=seed, report="false", snapshot_period=1)
     found = {f"confined {1e-6 * confinement:g}": (CONFINED, dict(common, **box, speed=SPEED, confinement=confinement))
              for confinement in confinements}
     found["tension"] = UNIAXIAL, dict(common, **box, speed=PULL, test="tension")
-    if campaign != "relations" and not blocked:
+    if campaign in ("laws", "resolution") and not blocked:
         found["toughness"] = TOUGHNESS, dict(common, size=size)
     return found
 
@@ -213,6 +216,7 @@ def draw_resolution(found):
 
 
 TITLES = {"laws": "What bond laws and rock properties do", "resolution": "The same rock of finer discs",
+          "softening": "Fracture energy at the same discs",
           "relations": "Dimensionless relations"}
 
 
