@@ -137,7 +137,7 @@ class CutOutput(Output):
         return found
 
     def warnings(self):
-        return [*energy_warnings(self.energy_balance()), *self._wear_warnings()]
+        return [*energy_warnings(self.energy_balance()), *self.scene.programme.warnings(), *self._wear_warnings()]
 
     def _wear_warnings(self):
         scene = self.scene

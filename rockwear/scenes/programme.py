@@ -123,6 +123,10 @@ class Programme(ABC):
     def results(self, columns):
         """{name: (value, unit)}: times and forces, from the history's columns."""
 
+    def warnings(self):
+        """Lines on what of it is not to be relied on."""
+        return []
+
     def tables(self):
         """{file: (header, rows)} of further tables."""
         return {}

@@ -25,6 +25,9 @@ LEAST_SPEED = 0.05
 """Part of the cutting velocity with which the ramp of speed begins."""
 BOUNDARIES = "absorbing", "fixed", "free"
 
+NEAR_BOTTOM, MOST_NEAR_BOTTOM = 0.1, 0.02
+"""Part of the window's height, and part of all cracks that may lie there without a warning."""
+
 WINDOW = Group("rock", (
     Parameter("window_behind", 0.03, "m", above_zero, "length of the window behind the tip"),
     Parameter("window_ahead", 0.06, "m", above_zero, "length of the window ahead of the tip"),
@@ -86,6 +89,8 @@ def check_window(v):
     slab = (v.window_behind + v.window_ahead) / SLABS
     require(slab >= 2 * v.radius_max, "radius_max", v.radius_max,
             f"at most {slab / 2:g}: half of a slab of the window", "m")
+    require(not v.rock_expansion, "rock_expansion", v.rock_expansion,
+            "0: rock that enters the window is of the size it was packed with", "1/K")
     require(v.cut_length > v.ramp_length, "cut_length", v.cut_length, f"more than ramp_length = {v.ramp_length:g}", "m")
 
 
@@ -119,7 +124,7 @@ class SteadyCut(Programme):
         self.way, self.speed, self.since = 0.0, 0.0, 0
 
     def stages(self):
-        return {"cut": (self.cut_length + self.ramp_length) / self.velocity / self.scene.time_scale}
+        return {"cut": (self.cut_length + self.ramp_length) / self.velocity * self.scene.time_scale}
 
     def begin(self):
         super().begin()
@@ -168,6 +173,18 @@ class SteadyCut(Programme):
             found["peak_cutting_force"] = float(columns["cutting_force"].max()), self.scene.units.force
         return {**found, "window_passed": (window.rock.begin, "m"), "chip_particles_cleared": (window.cleared, "-"),
                 "bonds_missed_ahead": (window.missed, "-")}
+
+    def warnings(self):
+        cracks, rock = self.scene.bonds.cracks, self.window.rock
+        deep = sum(crack.y < NEAR_BOTTOM * rock.height for crack in cracks)
+        found = []
+        if deep > MOST_NEAR_BOTTOM * len(cracks):
+            found.append(f"{deep} of {len(cracks)} cracks lie in the lowest {100 * NEAR_BOTTOM:g} % of the window, "
+                         "where its bottom rules what they do; a larger window_height tells how much")
+        if self.window.missed:
+            found.append(f"cracks reached the end of the window ahead, {self.window.missed} bonds were not made: a "
+                         "larger window_ahead tells how much it matters")
+        return found
 
     def tables(self):
         groove, chips = self._record()

@@ -17,7 +17,10 @@ LAWS = {"brittle": {},
 
 
 def steady_cut(out, *flags, **values):
-    return run_script(SCRIPT, *arguments({**SMALL, **values}), "--out", str(out), *flags, out=out)
+    given = {**SMALL, **values}
+    if given.get("tool") == "segments":
+        given = {name: value for name, value in given.items() if not name.startswith("tool_radius")}
+    return run_script(SCRIPT, *arguments(given), "--out", str(out), *flags, out=out)
 
 
 @pytest.fixture(scope="module", params=LAWS)
@@ -46,6 +49,14 @@ def test_a_cut_goes_on_as_if_it_was_never_stopped(never, tmp_path):
     assert_as_if_never_stopped(resumed, never)
 
 
+def test_segments_go_as_far_and_the_process_takes_as_long_as_it_is_slower(tmp_path):
+    run = steady_cut(tmp_path / "out", tool="segments", segment=1e-3, cut_length=0.01, velocity=2.5, time_scale=2.0)
+    assert run.code == 0, run.stderr
+    assert history(run.out)["distance [m]"][-1] == pytest.approx(0.01, abs=2e-4)
+    assert value(run, "simulated_time") == pytest.approx((0.01 + SMALL["ramp_length"]) / 2.5, rel=1e-3)
+    assert abs(run.summary["balances"]["energy"]["residual"]) < 0.02 * run.summary["balances"]["energy"]["tool_work"]
+
+
 @pytest.mark.parametrize("law", ["brittle", "cohesive"])
 def test_rock_at_rest_stays_at_rest_while_the_window_moves_on(law, tmp_path):
     """Two periods of the window over rock that nothing touches: no stress, no crack, as many bonds as at first."""
@@ -58,7 +69,8 @@ def test_rock_at_rest_stays_at_rest_while_the_window_moves_on(law, tmp_path):
 @pytest.mark.parametrize("values, words", [
     (dict(depth_of_cut=0.0131), "depth_of_cut = 0.0131 m"), (dict(window_ahead=0.01), "window_ahead = 0.01 m"),
     (dict(window_behind=0.005), "window_behind = 0.005 m"), (dict(ramp_length=0.02), "cut_length = 0.02 m"),
-    (dict(radius_max=2.1e-3), "radius_max = 0.0021 m"), (dict(tooth_height=0.004), "tooth_height = 0.004 m")])
+    (dict(radius_max=2.1e-3), "radius_max = 0.0021 m"), (dict(tooth_height=0.004), "tooth_height = 0.004 m"),
+    (dict(heat="true", rock_expansion=1e-5), "rock_expansion = 1e-05 1/K")])
 def test_a_cut_that_has_no_room_is_refused(values, words, tmp_path):
     (code, said), = refusals(SCRIPT, tmp_path, [[*arguments({**SMALL, **values}), "--out", tmp_path / "out"]])
     assert_refused(code, said, words)
