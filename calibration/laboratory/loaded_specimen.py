@@ -213,9 +213,8 @@ class SpecimenTest(Scene):
     def _make_engines(self):
         v, rock = self.v, self.rock
         row = max(1, round(v.record_strain * rock.width / (2 * v.speed * self.time_step)))
-        self.bonds = yade_scene.bonds_engine(rock, self.law, lambda: self.time)
-        if rock.depth is not None:
-            self.bonds.period = min(self.bonds.period, LOOK_IN_SPACE)
+        often = {"period": LOOK_IN_SPACE} if rock.depth is not None and self.law.yade_law == "Cpm" else {}
+        self.bonds = yade_scene.bonds_engine(rock, self.law, lambda: self.time, **often)
         motion = VelocityIncrement(masses=rock.masses, inertias=rock.inertias, radii=rock.radii, fixed=self.prescribed)
         self.rock_friction = RockFriction(bonds=self.bonds, motion=motion, period=v.rock_sampling_period)
         self.platens = Platens(left=self.left.tolist(), right=self.right.tolist(), velocity=self.sign * v.speed,

@@ -130,9 +130,9 @@ def _put_engines(bounds, geometry, parameters, laws, damping):
         NewtonIntegrator(damping=damping)]
 
 
-def bonds_engine(rock, law, clock):
-    """The engine of a rock's bonds, for the carrier that their law asks for."""
-    return CARRIERS[law.yade_law](pairs=rock.pairs, law=law, laws=rock.laws, clock=clock)
+def bonds_engine(rock, law, clock, **options):
+    """The engine of a rock's bonds, for the carrier that their law asks for. options: of that carrier."""
+    return CARRIERS[law.yade_law](pairs=rock.pairs, law=law, laws=rock.laws, clock=clock, **options)
 
 
 def make_bonds(rock, bonds):
