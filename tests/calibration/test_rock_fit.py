@@ -197,7 +197,7 @@ BRITTLE = {"bond_law": "brittle"}
     ({"radius_max": 5e-4}, "radius_max = 0.0005 m: must be at least radius_min = 0.001"),
     ({"grain_edge": -2}, "grain_edge = -2 m: must be at least -1"),
     ({"first_stage": "check"}, "first_stage = check: must be small without start"),
-    ({"start": "p_sandston"}, "start = p_sandston: must be a file, or one of hawkesbury"),
+    ({"start": "p_sandston"}, "start = p_sandston: must be a file, or one of "),
     ({"start": "hawkesbury"}, "start = hawkesbury: must be a rock with the bond law cohesive; it has coulomb"),
     ({"jobs": 0}, "jobs = 0: must be a whole number of at least 1"),
     ({"radius_min": 1}, "radius_min = 1 m: must be between 1e-06 and 0.1"),
