@@ -164,5 +164,5 @@ def words_on_rock(run):
     if is_loose(run):
         since = f"since the end of the {stage_name(run, 0)}"
         return f"Colour: how far each particle has moved {since}. Grey: fixed."
-    return ("Blue: chips, pieces that no chain of bonds joins to the fixed rock. The darker a particle, the more of "
-            "its bonds are broken. Grey: fixed.")
+    return ("Blue: chips, pieces that no chain of bonds joins to the held rock. The darker a particle, the more of "
+            "its bonds are broken. Grey: held.")

@@ -21,6 +21,9 @@ class Programme(ABC):
     damping_rates = None
     """(stages,) 1/s of background damping by stage; None where it stays the same."""
 
+    warnings = staticmethod(list)
+    """A function giving lines on what of a run is not to be relied on; none, if a programme has not its own."""
+
     def __init__(self, motion=None, arrays=None):
         self.motion, self.arrays = motion, arrays or {}
 
@@ -122,10 +125,6 @@ class Programme(ABC):
     @abstractmethod
     def results(self, columns):
         """{name: (value, unit)}: times and forces, from the history's columns."""
-
-    def warnings(self):
-        """Lines on what of it is not to be relied on."""
-        return []
 
     def tables(self):
         """{file: (header, rows)} of further tables."""

@@ -18,7 +18,7 @@ def set_up(run):
     """Section of the set-up."""
     if not in_plane(run):
         return None
-    text = "Grey discs are fixed. The tool moves to the right; only its dark surface takes part in contact."
+    text = "Grey discs are held. The tool moves to the right; only its dark surface takes part in contact."
     if turns(run):
         text += (" Dashed: the path of the tip, an arc that the swing stretches to a cycloid. The free surface is the "
                  "path of the pick before.")
@@ -36,7 +36,7 @@ def figure(run):
     marks = draw_turns(run, axes, shot, limits) if turns(run) else draw_straight_cut(run, axes, limits)
     frame(axes, limits)
     patches = [Patch(color=colour, label=label) for colour, label in (
-        (palette.ROCK, "rock"), (palette.FIXED, "fixed"), (palette.TOOL_INSIDE, "tool"),
+        (palette.ROCK, "rock"), (palette.FIXED, "held"), (palette.TOOL_INSIDE, "tool"),
         (palette.TOOL_SURFACE, "its surface"))]
     axes.legend(handles=patches + marks, loc="center left", bbox_to_anchor=(1.01, 0.5))
     return drawn
