@@ -150,7 +150,7 @@ class RockMass(RockAssembly):
         places, displacement = self.places, np.zeros((len(moved), 2))
         off = positions[joining] - places[joining]
         whole = np.linalg.norm(off, axis=1) < WHOLE * self.radii[joining]
-        if whole.mean() > 0.5:
+        if np.count_nonzero(whole) > 0.5 * len(whole):
             line = np.polynomial.polynomial.polyfit(places[joining[whole], 1], off[whole], 1)
             displacement = np.polynomial.polynomial.polyval(places[moved, 1], line).T
         now = positions.copy()
