@@ -33,6 +33,8 @@ BEGIN = 3
 """Depths of cut that do not count: the tool has passed the slope at which it begins, which is 2.7 long."""
 LOAD = 0.1
 """Part of the mean peak above which the tool is under load."""
+IN_TENSION = 1
+"""Mode of a crack (cracks.csv) on which more work was spent in tension than in slip."""
 
 ROCK = dict(bond_law="cohesive", rotation="blocked", kn=1.29e10, kt=4e9, mu=0.3, bond_tension=9.1e6,
             bond_cohesion=17.2e6, bond_fracture_energy=28.0, weibull_modulus=2.0, bonding_gap=5e-5)
@@ -80,7 +82,8 @@ CASES = [BASE, *[name for name in ROCKS if name != BASE], *CUTS]
 
 COLUMNS = {"specific energy / UCS": "energy", "mean Fc, kN/m": "force", "peak / mean": "peaks",
            "overbreak / depth": "overbreak", "chip length / depth": "chip", "thrust / cutting": "thrust",
-           "friction work, kN/m": "friction", "way under load": "loaded", "work in bonds": "bonds"}
+           "friction work, kN/m": "friction", "way under load": "loaded", "work in bonds": "bonds",
+           "in tension": "tension"}
 """{heading: quantity}."""
 
 
@@ -146,14 +149,15 @@ def of_run(run):
     late = way > begin
     chip = chip_length(particles=particles[late], area=area[late], length=length[late])
     overbreak = Measured(groove["overbreak"][0], groove["overbreak_standard_error"][0])
-    energy = run.balances["energy"]
+    energy, (work, mode) = run.balances["energy"], run.table("cracks.csv", "energy", "mode")
     loaded = steady_record.integral(distance, cutting > LOAD * peaks.mean().value)
     return {"force": scaled(mean, 1e-3), "energy": scaled(mean, 1 / depth), "peak": scaled(peaks.mean(), 1e-3),
             "peaks": steady_record.quotient(peaks.mean(), mean), "overbreak": scaled(overbreak, 1 / depth),
             "chip": scaled(chip, 1 / depth), "thrust": steady_record.ratio(distance, pressed, total, begin),
             "friction": scaled(steady_record.mean(distance, friction, begin), 1e-3),
             "loaded": steady_record.mean(distance, loaded, begin),
-            "bonds": Measured(energy["bond_breaking"] / energy["tool_work"], math.nan)}
+            "bonds": Measured(energy["bond_breaking"] / energy["tool_work"], math.nan),
+            "tension": Measured(float(work[mode == IN_TENSION].sum()) / energy["tool_work"], math.nan)}
 
 
 def scaled(measured, factor):
@@ -230,8 +234,8 @@ def write(folder):
     files = [folder / "steady_cut.csv"]
     lines = ["## Causes, one at a time", "", f"Mean ± standard error: of the packings where there are three, else of "
              f"the cuts' own records, from {BEGIN} depths of cut on. Way under load: part of the way with a cutting "
-             f"force above {LOAD:g} of the mean peak. Work in bonds: part of the tool's work that bonds take. "
-             "Minutes on a shared core.", "", *causes(found)]
+             f"force above {LOAD:g} of the mean peak. Work in bonds: part of the tool's work that bonds take "
+             "in slip and damage, and those alone that broke in tension. Minutes on a shared core.", "", *causes(found)]
     if BASE in found:
         lines += ["## The base against the envelope", "", *envelope(folder, found[BASE])]
         run = runs_of(folder / "cut", BASE)[0]

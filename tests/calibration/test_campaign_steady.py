@@ -43,7 +43,7 @@ def test_what_comes_before_the_end_of_the_slope_does_not_count(tmp_path):
     assert found["thrust"].value == pytest.approx(THRUST / FORCE)
     assert found["friction"].value == pytest.approx(1e-3 * FRICTION)
     assert found["overbreak"].value == pytest.approx(0.4) and found["chip"].value == pytest.approx(2.0)
-    assert found["bonds"].value == 0.5
+    assert found["bonds"].value == 0.5 and found["tension"].value == 0.1
 
 
 def test_specific_energy_is_over_the_strength_of_the_same_rock(tmp_path):
@@ -73,6 +73,7 @@ def write_run(folder):
     rows(folder / "history.csv", "distance cutting_force thrust_force tool_friction", distance,
          np.where(early, 1e6, FORCE), np.where(early, 1e6, THRUST), FRICTION * distance)
     rows(folder / "groove.csv", "x height", distance, np.where(early, -0.02, -2e-3))
+    rows(folder / "cracks.csv", "energy mode", [0.15, 0.05, 0.8], [1, 1, 2])
     late = ~early[::50]
     rows(folder / "chips.csv", "distance particles area length", distance[::50], 10 + late, 1e-5 + late,
          np.where(late, 0.01, 0.05))
