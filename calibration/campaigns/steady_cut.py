@@ -53,13 +53,15 @@ ROCKS = {
     "rotation free": dict(ROCK, rotation="free"),
     "fracture energy 3": dict(ROCK, bond_fracture_energy=3.0),
     "no scatter": dict(ROCK, weibull_modulus=0.0),
+    "brittle in shear too": {name: value for name, value in dict(ROCK, bond_law="coulomb").items()
+                             if name != "bond_fracture_energy"},
     "friction 0.5": dict(ROCK, mu=0.5, bond_cohesion=13e6),
     "medium sandstone": dict(rock="medium_sandstone"),
     "fracture energy 100": dict(ROCK, bond_fracture_energy=100.0),
     "Weibull modulus 4": dict(ROCK, weibull_modulus=4.0),
     "p sandstone": dict(rock="p_sandstone"),
 }
-"""Rocks that are cut as the base is."""
+"""Rocks that are cut as the base is. Slip does not damage a cohesive bond; a Coulomb bond breaks in shear at once."""
 CUTS = {
     "boundary fixed": dict(boundary="fixed"),
     "velocity 8 m/s": dict(velocity=8.0),
