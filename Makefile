@@ -39,10 +39,10 @@ setup: ## install what a run needs (Debian packages) and check that YADE starts
 setup-test: setup
 	$(call install,$(TO_TEST),pytest xdist)
 
-# Wear is accelerated so that the tip wears away within a cut of 50 mm instead of kilometres.
+# Wear is accelerated so that the tip wears away within a cut of 60 mm instead of kilometres.
 run: setup ## cut a sandstone steadily, the tip wearing; report in out/steady_cut/report.html
-	yade -n -x -j1 yade_scripts/steady_cut.py --rock interlocked_sandstone --cut_length 0.05 --heat true \
-	  --window_ahead 0.06 --window_height 0.04 --wear_acceleration 1e4 --out $(OUT)/steady_cut
+	yade -n -x -j1 yade_scripts/steady_cut.py --rock interlocked_sandstone --cut_length 0.06 --heat true \
+	  --wear_acceleration 5e3 --out $(OUT)/steady_cut
 
 test: setup-test ## all tests
 	$(PYTHON) -m pytest -n 2 --dist loadscope tests
