@@ -20,7 +20,7 @@ class AbsorbingBoundary(Engine):
     """Holds rock particles in the plane by springs and dashpots of kernels.viscous_spring.
 
     moduli: kernels.elastic_moduli.Moduli of the rock; density: kg/m3 of its bulk; period: steps between samples of the
-    energy. `hold` and `let_go` may be called between any two steps once the rock is bonded; a held particle must be
+    energy. `hold` and `release` may be called between any two steps once the rock is bonded; a held particle must be
     free to move.
 
     A support is a sphere at rest that nothing else meets. It reaches to the far side of its particle, so that they
@@ -64,7 +64,7 @@ class AbsorbingBoundary(Engine):
         total = [np.bincount(which, np.where(along, one, other), len(held)) for one, other in (
             constants[0:2], constants[1::-1], constants[2:4], constants[3:1:-1])]
         exerted = self._springs(np.broadcast_to(displacements, given.shape)[first], normals, *total[:2])
-        exerted += self._let_go(held)
+        exerted += self._release(held)
         start = len(self.numbers)
         states = self._states(held)
         new = (held, self._supports(len(held)), states[:, :2], normals, exerted, *total)
@@ -76,13 +76,13 @@ class AbsorbingBoundary(Engine):
         self._set_forces(added)
         self.power = self._power()
 
-    def let_go(self, numbers):
+    def release(self, numbers):
         """Let these particles (k,) go. Those that are not held stay as they are."""
         self.act()
-        self._let_go(np.asarray(numbers, int))
+        self._release(np.asarray(numbers, int))
         self.power = self._power()
 
-    def _let_go(self, numbers):
+    def _release(self, numbers):
         """-> (k, 2) N that the boundary exerted on each, without the dashpots."""
         exerted = np.zeros((len(numbers), 2))
         gone = np.flatnonzero(np.isin(self.numbers, numbers))
@@ -179,13 +179,6 @@ class AbsorbingBoundary(Engine):
     def elastic_energy(self):
         """J of the springs, less the work of the constant forces."""
         return float(self._energies().sum()) if len(self.numbers) else 0.0
-
-    def ground(self):
-        """(nodes, normals, kn, kt, cn) of kernels.stability.critical_time_step: each particle twice, by direction."""
-        across = np.column_stack([-self.normals[:, 1], self.normals[:, 0]])
-        both = [np.concatenate(pair) for pair in ((self.numbers, self.numbers), (self.normals, across),
-                                                  (self.kn, self.kt), (self.cn, self.ct))]
-        return both[0], both[1], both[2], np.zeros(len(both[0])), both[3]
 
     def log(self):
         return {"absorbed_energy": (self.absorbed, "J"), "boundary_power": (self.power, "W")}

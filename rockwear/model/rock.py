@@ -52,6 +52,39 @@ def pack_uniform(box, *, radius_min, radius_max, **common):
     return packing.tile(part, repeats)
 
 
+def packed_box(*, width, height, radius_min, radius_max, porosity, seed, bonding_gap, grading_factor, fine_depth,
+               along=False):
+    """Discs in a box and the pairs of them to bond, checked and kept in the cache; parameters as of a Specimen.
+
+    along: whether the packing repeats itself along x. -> {"positions", "radii", "scale"}, (m, 2) int.
+    """
+    positive("width", width, "m"), positive("height", height, "m")
+    not_negative("bonding_gap", bonding_gap, "m")
+    require(bonding_gap <= radius_min, "bonding_gap", bonding_gap,
+            f"at most radius_min = {radius_min:g}: bonds join neighbours", "m")
+    within("grading_factor", grading_factor, 1, 8)
+    positive("fine_depth", fine_depth, "m")
+    key = dict(box=[width, height], radius_min=radius_min, radius_max=radius_max, porosity=porosity, seed=seed)
+    field = None
+    if grading_factor > 1:
+        key.update(grading_factor=grading_factor, fine_depth=fine_depth)
+        field = graded_radius(top=height, fine_depth=fine_depth, grading_factor=grading_factor, over=fine_depth)
+    if along:
+        key.update(periodic=[True, False])
+
+    def make():
+        common = dict(radius_min=radius_min, radius_max=radius_max, porosity=porosity, seed=seed)
+        made = (packing.pack(box=(width, height), radius_scale=field, periodic=(along, False), **common)
+                if field or along else pack_uniform((width, height), **common))
+        return {"positions": made.positions, "radii": made.radii, "scale": made.scale}
+
+    stored = cached(make, **key)
+    period = np.array([width, 0.0]) if along else None
+    pairs = packing.contacts(stored["positions"], stored["radii"], bonding_gap, period)
+    require(len(pairs) > len(stored["radii"]), "bonding_gap", bonding_gap, "large enough to bond the packing", "m")
+    return stored, pairs
+
+
 class RockAssembly:
     """Particles of thickness 1 m in the plane, or spheres in space, in a box, and the pairs of them that are bonded.
 
@@ -282,26 +315,9 @@ class Specimen(RockAssembly):
 
     def __init__(self, *, width, height, radius_min, radius_max, porosity, seed, bonding_gap, grading_factor=1.0,
                  fine_depth=0.035, density):
-        positive("width", width, "m"), positive("height", height, "m")
-        not_negative("bonding_gap", bonding_gap, "m")
-        require(bonding_gap <= radius_min, "bonding_gap", bonding_gap,
-                f"at most radius_min = {radius_min:g}: bonds join neighbours", "m")
-        within("grading_factor", grading_factor, 1, 8)
-        positive("fine_depth", fine_depth, "m")
-        key = dict(box=[width, height], radius_min=radius_min, radius_max=radius_max, porosity=porosity, seed=seed)
-        if grading_factor > 1:
-            key.update(grading_factor=grading_factor, fine_depth=fine_depth)
-
-        def make():
-            common = dict(radius_min=radius_min, radius_max=radius_max, porosity=porosity, seed=seed)
-            field = graded_radius(top=height, fine_depth=fine_depth, grading_factor=grading_factor, over=fine_depth)
-            made = (packing.pack(box=(width, height), radius_scale=field, **common) if grading_factor > 1
-                    else pack_uniform((width, height), **common))
-            return {"positions": made.positions, "radii": made.radii, "scale": made.scale}
-
-        stored = cached(make, **key)
-        pairs = packing.contacts(stored["positions"], stored["radii"], bonding_gap)
-        require(len(pairs) > len(stored["radii"]), "bonding_gap", bonding_gap, "large enough to bond the packing", "m")
+        stored, pairs = packed_box(
+            width=width, height=height, radius_min=radius_min, radius_max=radius_max, porosity=porosity, seed=seed,
+            bonding_gap=bonding_gap, grading_factor=grading_factor, fine_depth=fine_depth)
         self.radius_max = radius_max
         super().__init__(positions=stored["positions"], radii=stored["radii"], width=width, height=height,
                          density=density, pairs=pairs, scale=stored["scale"])

@@ -4,11 +4,9 @@ from functools import cached_property
 import numpy as np
 
 from rockwear.kernels import packing
-from rockwear.kernels.checks import not_negative, positive, require, within
 from rockwear.kernels.elastic_moduli import elastic_moduli
 from rockwear.kernels.voronoi import periodic_cells
-from rockwear.model.cache import cached
-from rockwear.model.rock import RockAssembly, graded_radius
+from rockwear.model.rock import RockAssembly, packed_box
 
 SLABS = 16
 """Parts of the window that leave it and enter it as one."""
@@ -39,23 +37,10 @@ class RockMass(RockAssembly):
 
     def __init__(self, *, width, height, radius_min, radius_max, porosity, seed, bonding_gap, grading_factor=1.0,
                  fine_depth=0.035, density):
-        positive("width", width, "m"), positive("height", height, "m"), positive("fine_depth", fine_depth, "m")
-        not_negative("bonding_gap", bonding_gap, "m"), within("grading_factor", grading_factor, 1, 8)
-        require(bonding_gap <= radius_min, "bonding_gap", bonding_gap,
-                f"at most radius_min = {radius_min:g}: bonds join neighbours", "m")
-        key = dict(box=[width, height], radius_min=radius_min, radius_max=radius_max, porosity=porosity, seed=seed,
-                   grading_factor=grading_factor, fine_depth=fine_depth, periodic=[True, False])
-
-        def make():
-            field = graded_radius(top=height, fine_depth=fine_depth, grading_factor=grading_factor, over=fine_depth)
-            made = packing.pack(box=(width, height), radius_min=radius_min, radius_max=radius_max, porosity=porosity,
-                                seed=seed, radius_scale=field if grading_factor > 1 else None, periodic=(True, False))
-            return {"positions": made.positions, "radii": made.radii, "scale": made.scale}
-
-        stored = cached(make, **key)
+        stored, pairs = packed_box(
+            width=width, height=height, radius_min=radius_min, radius_max=radius_max, porosity=porosity, seed=seed,
+            bonding_gap=bonding_gap, grading_factor=grading_factor, fine_depth=fine_depth, along=True)
         self.period = np.array([width, 0.0])
-        pairs = packing.contacts(stored["positions"], stored["radii"], bonding_gap, self.period)
-        require(len(pairs) > len(stored["radii"]), "bonding_gap", bonding_gap, "large enough to bond the packing", "m")
         super().__init__(positions=stored["positions"], radii=stored["radii"], width=width, height=height,
                          density=density, pairs=pairs, scale=stored["scale"])
         i, j = pairs.T
@@ -65,8 +50,6 @@ class RockMass(RockAssembly):
         self.laps, self.absent = np.zeros(self.count, int), np.zeros(self.count, bool)
         self.passed = 0
         """Slabs that have left the window."""
-
-    slabs = SLABS
 
     @property
     def slab_length(self):

@@ -3,6 +3,7 @@ import numpy as np
 
 from rockwear.kernels.fragments import fragments
 from rockwear.kernels.groove import groove_profile
+from rockwear.model.rock_mass import SLABS
 
 GROOVE = "x height".split()
 CHIPS = "distance particles area length thickness y".split()
@@ -28,7 +29,7 @@ class CutRecord:
     def book(self, *, positions, intact, distance):
         """The slab behind is about to leave. positions (n, 2) m; intact (m,) bool; distance: m of cut so far."""
         rock = self.rock
-        leaving = (rock.slab == rock.passed % rock.slabs) & ~rock.absent
+        leaving = (rock.slab == rock.passed % SLABS) & ~rock.absent
         groove, chips, members = self._found(positions, intact, distance, rock.begin + rock.slab_length, leaving)
         self.groove += groove
         self.chips += chips

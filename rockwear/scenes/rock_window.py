@@ -20,7 +20,7 @@ class FixedBoundary:
             state = O.bodies[n].state
             state.blockedDOFs, state.vel, state.angVel = HELD, Vector3.Zero, Vector3.Zero
 
-    def let_go(self, numbers):
+    def release(self, numbers):
         """Hold these particles no more."""
         for n in numbers.tolist():
             O.bodies[n].state.blockedDOFs = FREE
@@ -69,11 +69,11 @@ class RockWindow:
         positions = rock_states(rock)[:, :2]
         self.record.book(positions=positions, intact=bonds.status == INTACT, distance=distance)
         if self.sides:
-            self.boundary.let_go(self.held)
+            self.boundary.release(self.held)
         moved = rock.advance()
         displacement, made, in_the_way = rock.fit(moved, positions)
         bottom = moved[rock.anchored[moved]]
-        self.boundary.let_go(bottom)
+        self.boundary.release(bottom)
         self._put(moved, rock.places[moved] + displacement, FREE)
         self._put(in_the_way, rock.places[in_the_way], HELD)
         # YADE's loop would find contacts of supports anew, as of rock.

@@ -69,7 +69,7 @@ def make(values):
     rock.leave_out(above_groove(rock, outline + [v.window_behind, path], path, math.radians(v.begin_angle)))
     programme = SteadyCut(
         velocity=v.velocity * v.time_scale, cut_length=v.cut_length, ramp_length=v.ramp_length,
-        start=(v.window_behind, path), depth_of_cut=v.depth_of_cut,
+        start=(v.window_behind, path),
         window=RockWindow(rock=rock, behind=v.window_behind, sides=v.boundary != "free",
                           record=CutRecord(rock=rock, start=(v.window_behind, path))))
     return Cut(tool=tool, programme=programme, rock=parts.bond(rock, v), time_scale=v.time_scale,
@@ -116,11 +116,10 @@ class SteadyCut(Programme):
     RockWindow.
     """
 
-    def __init__(self, *, velocity, cut_length, ramp_length, start, depth_of_cut, window):
+    def __init__(self, *, velocity, cut_length, ramp_length, start, window):
         super().__init__(Straight(start=start, velocity=(velocity, 0.0)), {"stage_names": np.array(["cut"])})
         self.origin = start
         self.velocity, self.cut_length, self.ramp_length, self.window = velocity, cut_length, ramp_length, window
-        self.depth_of_cut = depth_of_cut
         self.way, self.speed, self.since = 0.0, 0.0, 0
 
     def stages(self):
@@ -156,7 +155,8 @@ class SteadyCut(Programme):
 
     def _record(self):
         """(groove (k, 2), chips (l, 6)) up to now, without what lies within a depth of cut of the tip."""
-        groove, chips = self.window.whole_record(self.distance, self.origin[0] + self.distance - self.depth_of_cut)
+        behind = self.origin[0] + self.distance - self.scene.depth_of_cut
+        groove, chips = self.window.whole_record(self.distance, behind)
         return np.array(groove).reshape(-1, len(GROOVE)), np.array(chips).reshape(-1, len(CHIPS))
 
     def results(self, columns):
@@ -164,7 +164,7 @@ class SteadyCut(Programme):
         if columns:
             found = steady_results(distance=columns["distance"], cutting=columns["cutting_force"],
                                    thrust=columns["thrust_force"], friction_work=columns["tool_friction"],
-                                   depth=self.depth_of_cut)
+                                   depth=self.scene.depth_of_cut)
             begin = found["transient"][0]
             (x, height), chips = (part[part[:, 0] > begin].T for part in self._record())
             found.update(groove_results(x=x, height=height, chip=found["peak_spacing"][0]))

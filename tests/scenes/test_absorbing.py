@@ -18,5 +18,5 @@ def test_the_dashpots_take_what_is_missing(checks):
     assert all(abs(checks[pulse]["missed"]) < 3e-3 for pulse in ("P0", "S0", "P45", "S45"))
 
 
-def test_a_particle_that_is_let_go_feels_nothing(checks):
-    assert checks["let_go"] < 1e-6
+def test_a_particle_that_is_released_feels_nothing(checks):
+    assert checks["release"] < 1e-6

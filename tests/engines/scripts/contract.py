@@ -365,7 +365,7 @@ class Absorbing(World):
             self._hold([0, 8, 16], (-1, 0), [(1e-7, 0.0)] * 3)
         else:
             self._hold([7, 15, 23], (1, 0))
-            self.boundary.let_go([1, 3, 5])
+            self.boundary.release([1, 3, 5])
 
 
 class NowhereLinear(Tension):

@@ -144,10 +144,10 @@ def reflected(block, kind, degrees, wavelength, amplitude):
             "missed": (first - left - (block.boundary.absorbed - before)) / first}
 
 
-def let_go(block):
+def release(block):
     """Energy that particles gain when they are let go, over what the springs of half a radius would hold."""
     before, springs = block.energy(), float(np.sum(block.boundary.kn)) * RADIUS**2 / 8
-    block.boundary.let_go(block.boundary.numbers.copy())
+    block.boundary.release(block.boundary.numbers.copy())
     base.run(3)
     return abs(block.energy() - before) / springs
 
@@ -159,7 +159,7 @@ def main():
     pulses = [(wave, degrees) for wave in "PS" for degrees in (0, 45)]
     found = {f"{wave}{degrees}": reflected(block, wave, degrees, wavelength, amplitude)
              for (wave, degrees), amplitude in zip(pulses, AMPLITUDES)}
-    found["let_go"] = let_go(block)
+    found["release"] = release(block)
     with open(sys.argv[-1], "w", encoding="utf-8") as file:
         json.dump(found, file)
 
