@@ -26,7 +26,7 @@ from rockwear.model.rock import Block, Specimen
 from rockwear.run import vtk
 from rockwear.scenes import parameters, parts, yade_scene
 from rockwear.scenes.balances import with_residual
-from rockwear.scenes.output import Output, crack_table
+from rockwear.scenes.output import Output, crack_table, density_map
 from rockwear.scenes.scene import Scene
 
 LOADING = (
@@ -58,7 +58,7 @@ def groups(*own, rock=IN_THE_PLANE, without=(), **defaults):
     return parameters.with_defaults(
         [kept(rock), parameters.BONDS,
          kept(Group("loading", (*own, *LOADING))),
-         parameters.ACCURACY.only("time_step_fraction", "time_step", "rock_sampling_period")],
+         parameters.ACCURACY.only("time_step_fraction", "time_step", "rock_sampling_period"), parameters.DENSITY_MAP],
         **{"time_step_fraction": 0.6, **defaults})
 
 
@@ -315,13 +315,15 @@ class SpecimenOutput(Output):
                              0].ravel(), minlength=self.scene.rock.count)
         return {"time": self.scene.time, "stage": self.scene.stage,
                 "rock_positions": access.rock_positions(self.scene.rock), "displacement": self.scene.displacements(),
-                "broken_bonds": broken, "status": self.scene.bonds.status, "softening": self.scene.bonds.softening()}
+                "broken_bonds": broken, "status": self.scene.bonds.status, "softening": self.scene.bonds.softening(),
+                **density_map(self.scene.rock, access.rock_positions(self.scene.rock), self.scene.v.control_radius)}
 
     def write_vtk(self, folder, number):
-        """rock.NNNN.vtk: diameter, broken bonds, displacement."""
+        """rock.NNNN.vtk: diameter, broken bonds, displacement, density."""
         shot = self.snapshot()
         vtk.write(folder / f"rock.{number:04d}.vtk", shot["rock_positions"],
                   {"diameter": 2 * self.scene.rock.radii, "broken_bonds": shot["broken_bonds"],
+                   **{name: shot[name] for name in ("density",) if name in shot},
                    **{f"displacement_{axis}": moved for axis, moved in zip("xyz", shot["displacement"].T)}})
 
     def tables(self):

@@ -16,6 +16,15 @@ def number(low=None, high=None):
     return rule
 
 
+def zero_or(low, high):
+    """A rule: 0, which leaves something out, or a number in [low, high]."""
+    def rule(name, value, unit):
+        found = finite(name, value, unit)
+        require(found == 0 or low <= found <= high, name, found, f"0 or between {low:g} and {high:g}", unit)
+        return found
+    return rule
+
+
 def above_zero(name, value, unit):
     """A rule: a finite number greater than 0."""
     found = finite(name, value, unit)

@@ -2,6 +2,7 @@
 from rockwear.report.views import heat_profiles, speeds, space, stress_strain, temperature, turns, wear_spheres
 from rockwear.report.views.balances import balances
 from rockwear.report.views.cut import cut
+from rockwear.report.views.density import density
 from rockwear.report.views.forces import forces
 from rockwear.report.views.history import history
 from rockwear.report.views.key_results import key_results
@@ -23,7 +24,7 @@ VIEWS = (
     heat_profiles.errors, heat_profiles.profiles, heat_profiles.convergence, heat_profiles.fields,
     stress_strain.stress_strain, load_displacement, stress_strain.failure, worn_block,
     speeds.speed_tables, speeds.tip_over_time, speeds.fields, speeds.near_the_tip,
-    set_up, cut, space.perspective, space.side, forces, history,
+    set_up, cut, space.perspective, space.side, density, forces, history,
     temperature.temperature, temperature.heating, temperature.cooling, turns.turns,
     wear_particles, wear_segments, wear_spheres.wear_spheres, wear_spheres.stages_of_wear, wear_triangles, outlines,
     turns.mass_loss, trust, balances, results, how_it_was_run)

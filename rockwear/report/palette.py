@@ -20,6 +20,7 @@ DAMAGE = _scale("damage", ROCK, "#8f5a24")
 CHIP = _scale("chip", "#c9dfee", "#3b7fb0")
 TEMPERATURE = _scale("temperature", "#e9e9e4", "#fdd873", "#f58a3c", "#c8252c", "#54093a")
 WEAR = _scale("wear", "#d9dde0", "#fdd873", "#f58a3c", "#c8252c", "#54093a")
+DENSITY = _scale("density", "#54093a", "#c8252c", "#f58a3c", "#fdd873", "#e9e9e4")
 TRAVEL, DISPLACEMENT, DIMENSIONLESS = colormaps["YlOrBr"], colormaps["viridis"], colormaps["inferno"]
 
 # Lines of quantities that stand for the same everywhere.

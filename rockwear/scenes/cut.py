@@ -35,20 +35,21 @@ class Cut(Scene):
     expansion, gravity, boundary: of scenes.physics, or None; background_damping: 1/s; non_viscous_damping: of each
     force; bond_damping: of the critical damping of bonds, in the plane; time_scale: mechanical over physical rate;
     depth_of_cut: m, to which depth the tool must reach to cut; notes: {name: (value, unit)} of further results;
-    first_temperature: K of a tool without heat.
+    first_temperature: K of a tool without heat; control_radius: of the density map, in particle radii, 0 for none.
 
     In the plane the balances count per metre of thickness.
     """
 
     def __init__(self, *, rock, bond_law, tool, programme, accuracy, depth_of_cut, first_temperature, heat=None,
                  expansion=None, gravity=None, boundary=None, background_damping=0.0, non_viscous_damping=0.0,
-                 bond_damping=0.0, time_scale=1.0, notes=None):
+                 bond_damping=0.0, time_scale=1.0, notes=None, control_radius=0.0):
         super().__init__()
         self.rock, self.bond_law, self.tool, self.programme, self.accuracy = rock, bond_law, tool, programme, accuracy
         self.heat_model, self.expansion_model, self.gravity, self.boundary_model = heat, expansion, gravity, boundary
         self.background_damping, self.time_scale = background_damping, time_scale
         self.non_viscous_damping, self.bond_damping = non_viscous_damping, bond_damping
         self.depth_of_cut, self.first_temperature, self.notes = depth_of_cut, first_temperature, notes or {}
+        self.control_radius = control_radius
         self.units = tool.units
         self.in_plane = self.units is PLANE
         # YADE's shear by full radii gains energy where spheres overlap by a tenth of their size.

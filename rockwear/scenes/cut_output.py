@@ -9,7 +9,7 @@ from rockwear.kernels.archard import KELVIN
 from rockwear.kernels.rigid_motion import Pose
 from rockwear.run import vtk
 from rockwear.scenes.balances import energy_warnings, with_residual
-from rockwear.scenes.output import Output, crack_table
+from rockwear.scenes.output import Output, crack_table, density_map
 
 
 class CutOutput(Output):
@@ -83,7 +83,9 @@ class CutOutput(Output):
         pose = scene.tool.bodies.pose
         heat = {"temperature": scene.heat.network.temperature,
                 "thermal_alive": scene.tool.thermal_body.alive} if scene.heat else {"temperature": np.empty(0)}
-        return {"time": scene.time, "stage": scene.stage, "rock_positions": rock.shown(access.rock_positions(rock)),
+        places = rock.shown(access.rock_positions(rock))
+        return {"time": scene.time, "stage": scene.stage, "rock_positions": places,
+                **density_map(rock, places, scene.control_radius),
                 "broken_bonds": np.bincount(rock.pairs[(scene.bonds.status != 0) & rock.bonded].ravel(),
                                             minlength=rock.count),
                 "status": scene.bonds.status, "tool_offset": pose.offset - rock.frame[:2],
@@ -91,10 +93,13 @@ class CutOutput(Output):
                 **heat, **scene.tool.snapshot()}
 
     def write_vtk(self, folder, number):
-        """rock.NNNN.vtk and tool.NNNN.vtk: diameter, broken bonds, temperature; the tool's pieces, worn depth."""
+        """rock.NNNN.vtk and tool.NNNN.vtk: diameter, broken bonds, density, temperature; the tool's pieces, worn
+        depth."""
         scene = self.scene
         shot, rock = self.snapshot(), scene.rock
         fields = {"diameter": 2 * rock.radii, "broken_bonds": shot["broken_bonds"]}
+        if "density" in shot:
+            fields["density"] = shot["density"]
         if scene.heat:
             fields["temperature"] = shot["temperature"][:rock.count]
         places, of_tool = scene.tool.points(scene.heat.temperature_of_pieces() if scene.heat else None)

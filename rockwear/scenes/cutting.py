@@ -11,7 +11,7 @@ from rockwear.scenes.programme import Cycles
 
 GROUPS = [parameters.SPECIMEN, parameters.BONDS, parameters.PLANE_TOOL, parameters.CONTACT, parameters.CYCLES,
           parameters.WEAR,
-          parameters.HEAT, parameters.ACCURACY]
+          parameters.HEAT, parameters.ACCURACY, parameters.DENSITY_MAP]
 
 
 def groups(**defaults):

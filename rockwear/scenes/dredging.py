@@ -46,7 +46,7 @@ def groups(full=False):
     """The scene's parameter groups; full: with the source's discs, some 92,000, as defaults."""
     found = []
     for group in (parameters.SPECIMEN, parameters.BONDS, parameters.PLANE_TOOL, parameters.CONTACT, parameters.CYCLES,
-                  parameters.WEAR, parameters.HEAT, parameters.ACCURACY):
+                  parameters.WEAR, parameters.HEAT, parameters.ACCURACY, parameters.DENSITY_MAP):
         own = {"rock": ROCK, "motion": MOTION}.get(group.title, ())
         kept = tuple(p for p in group.parameters if p.name not in WITHOUT)
         found.append(Group(group.title, (*own, *kept), group.when))

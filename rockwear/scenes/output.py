@@ -1,7 +1,11 @@
 """What the folder of a run shows of a scene."""
 from abc import ABC, abstractmethod
 
+import numpy as np
+
 from rockwear.engines.bond_log import Crack
+from rockwear.kernels.density import control_volume_density
+from rockwear.kernels.packing import volumes
 
 
 class Output(ABC):
@@ -50,3 +54,16 @@ def crack_table(cracks):
     """{file: (header, rows)} of broken bonds (engines.bonds.Crack), in order of time."""
     units = "s m m m - - - - J - -".split()
     return {"cracks.csv": ([f"{name} [{unit}]" for name, unit in zip(Crack._fields, units)], sorted(cracks))}
+
+
+def density_map(rock, places, control_radius):
+    """{"density": (n,) kg/m3} of rock around each of its particles [Rojek 2003, eq. 7.9], nothing for a control_radius
+    of 0; places: (n, d) m, nan for particles that are not there. Only rock counts, not the tool in it."""
+    if not control_radius:
+        return {}
+    there = np.isfinite(places).all(axis=1)
+    density = np.full(rock.count, np.nan)
+    density[there] = control_volume_density(
+        positions=places[there], radii=rock.radii[there], ratio=control_radius,
+        densities=rock.masses[there] / volumes(rock.radii[there], rock.dimensions))
+    return {"density": density}

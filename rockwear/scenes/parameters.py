@@ -1,10 +1,11 @@
 """Parameter groups that scenes take as a whole; each scene has defaults of its own."""
 from rockwear.kernels.bond_laws import BOND_LAWS
 from rockwear.kernels.conduction import PATHS
+from rockwear.kernels.density import LEAST_RATIO, MOST_RATIO
 from rockwear.kernels.erosion import REMOVAL
 from rockwear.kernels.parameter import (
     Group, Parameter, above_zero, choice, density, duration, file, flag, integer, law_parameters, number, speed,
-    stiffness, text)
+    stiffness, text, zero_or)
 from rockwear.kernels.wear_laws import WEAR_LAWS
 from rockwear.model.materials import SANDSTONE, STEEL
 from rockwear.model.rock_file import RockPresets
@@ -243,6 +244,14 @@ ACCURACY = Group("accuracy", (
               {"heat": (True,)}),
     Parameter("damping_period", 500, "steps", integer(1), "between visits of the background damping"),
     Parameter("record_period", 2e-5, "s", above_zero, "between rows of history.csv")))
+
+# ---- output
+
+DENSITY_MAP = Group("output", (
+    Parameter("control_radius", 0.0, "", zero_or(LEAST_RATIO, MOST_RATIO),
+              "of the density map: radius of the control volume around a particle, over the particle's own, 3 say; 0: "
+              "no density map", "[Rojek 2003, eq. 7.9]"),))
+"""What a snapshot shows of rock when asked to."""
 
 
 def with_defaults(groups, **defaults):

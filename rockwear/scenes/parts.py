@@ -149,4 +149,4 @@ def common(v):
                 bond_damping=getattr(v, "bond_damping", 0.0), accuracy=accuracy(v),
                 depth_of_cut=v.depth_of_cut, heat=heat(v),
                 expansion=expansion(v),
-                first_temperature=v.tool_temperature)
+                first_temperature=v.tool_temperature, control_radius=v.control_radius)

@@ -44,7 +44,7 @@ STEADY = Group("motion", (
               "behind a chip; 90: as the face of the tool"),
     parameters.DAMPING, *parameters.OTHER_DAMPING))
 GROUPS = [WINDOW, parameters.BONDS, parameters.PLANE_TOOL, parameters.CONTACT, STEADY, parameters.WEAR,
-          parameters.HEAT, parameters.ACCURACY]
+          parameters.HEAT, parameters.ACCURACY, parameters.DENSITY_MAP]
 
 
 def groups(**defaults):
