@@ -8,6 +8,8 @@ from types import SimpleNamespace
 
 import numpy as np
 
+from rockwear.kernels.density import control_volume_density
+
 ROOT = Path(__file__).resolve().parents[1]
 SMALL = dict(width=0.06, height=0.04, radius_min=1.5e-3, radius_max=2.2e-3, tooth_height=0.03, tooth_width=0.02,
              rake=10, clearance=10, tip_radius=2e-3, depth_of_cut=0.01, start_up=0.0012, cycles=1, cycle_time=4e-4,
@@ -79,6 +81,29 @@ def last_snapshot(out):
     """{name: array} of the last snapshot of the run in `out`."""
     with np.load(sorted((out / "snapshots").glob("*.npz"))[-1]) as arrays:
         return dict(arrays)
+
+
+def vtk_field(file, name):
+    """(n,) a field of a VTK file of ours."""
+    lines = file.read_text(encoding="utf-8").splitlines()
+    count, first = int(lines[4].split()[1]), lines.index(f"SCALARS {name} double 1") + 2
+    return np.array(lines[first:first + count], float)
+
+
+def assert_density_is_shown(out, ratio, bulk):
+    """The density of the last snapshot is that of its particles, of masses as their radii were at first; ParaView has
+    it too. bulk: kg/m3 of the rock, which it has inside."""
+    shot, radii = last_snapshot(out), np.load(out / "model.npz")["rock_radii"]
+    there = np.isfinite(shot["rock_positions"]).all(axis=1)
+    fraction = control_volume_density(positions=shot["rock_positions"][there], radii=radii[there], densities=1.0,
+                                      ratio=ratio)
+    density = shot["density"]
+    assert np.array_equal(np.isfinite(density), there) and there.sum() > 100
+    assert 0.7 * bulk < np.median(density[there]) < 1.1 * bulk and density[there].min() < 0.7 * bulk
+    assert np.corrcoef(density[there], fraction)[0, 1] > 0.98
+    files = sorted((out / "vtk").glob("rock.*.vtk"))
+    if files:
+        np.testing.assert_allclose(vtk_field(files[-1], "density"), density[there], rtol=1e-8)
 
 
 def assert_as_if_never_stopped(resumed, never, *tables):

@@ -10,7 +10,7 @@ import pytest
 from rockwear.kernels.boundary import prism, segments
 from rockwear.report import bodies, instants, pages, plots
 from rockwear.report.folder import RunFolder
-from rockwear.report.views import forces, history, key_results, outlines, speeds, stages, temperature, two_disc
+from rockwear.report.views import density, forces, history, key_results, outlines, speeds, stages, temperature, two_disc
 from tests.report.made_up import HEADER, HOT, lattice, make_run
 
 ROOT = Path(__file__).parents[2]
@@ -123,6 +123,27 @@ def test_worn_depth_of_segments_is_exact(tmp_path):
     np.testing.assert_allclose(bodies.gap(run, bottom), 0, atol=1e-12)
     profile = outlines.figure(run).axes[2]
     assert max(line.get_ydata().max() for line in profile.lines) == pytest.approx(0.3, rel=1e-6)
+
+
+def test_a_density_map_is_shown_where_there_is_one(tmp_path):
+    def with_density(arrays, k):
+        return {**arrays, "density": np.linspace(1000 + k, 2500, len(arrays["rock_positions"]))}
+
+    def specimen(arrays):
+        return {name: array for name, array in arrays.items() if not name.startswith("tool") and name != "outline"}
+
+    plane, space, alone = (make_run(tmp_path / name, heat=False) for name in ("plane", "space", "alone"))
+    assert "Density of the rock" not in titles(RunFolder(plane))
+    in_space(space)
+    for folder, model in ((plane, dict), (space, dict), (alone, specimen)):
+        parameters(folder, control_radius=3.0, rock_density=2500.0)
+        run = RunFolder(change(folder, model, with_density))
+        assert "within 3 of its radii" in density.density(run).html()
+        assert (folder / "figures/density.png").stat().st_size > 1e4
+    shown = density.in_plane_figure(RunFolder(plane))
+    colours = shown.axes[0].collections[0].get_array()
+    np.testing.assert_allclose(colours, np.linspace(1000, 2500, 100) / 2500)
+    assert [axes.get_title() for axes in density.in_plane_figure(RunFolder(alone)).axes[:2]] == ["0.00 ms", "3.00 ms"]
 
 
 def test_volume_of_a_tool_however_it_is_made(tmp_path):

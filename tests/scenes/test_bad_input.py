@@ -57,6 +57,7 @@ BROKEN_RULES = [
     ({"tool_temperature": 1500},
      "tool_temperature = 1500 K: must be inside the hardness table of MET91, 273.15 to 873.15"),
     ({"ambient_temperature": 20}, "ambient_temperature = 20 K: must be inside the hardness table"),
+    ({"control_radius": 0.5}, "control_radius = 0.5: must be 0 or between 1 and 20"),
     ({"time_step": 1e-5}, "time_step = 1e-05 s: must be at most the stable step"),
     ({"time_step_fraction": 1.5}, "time_step_fraction = 1.5: must be at most 1"),
     ({"sampling_period": 0}, "sampling_period = 0 steps: must be a whole number of at least 1"),

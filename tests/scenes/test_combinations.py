@@ -14,8 +14,8 @@ from rockwear.model.particle_tool import LayeredTool, Tool
 from rockwear.model.thermal_body import FacetBody, ParticleBody
 from rockwear.report.folder import read_history
 from tests.running import (
-    BLOCK, BLOCK_OF_TRIANGLES, ROOT, SMALL, arguments, assert_as_if_never_stopped, assert_refused, interrupt_script,
-    last_snapshot, refusals, run_script, value)
+    BLOCK, BLOCK_OF_TRIANGLES, ROOT, SMALL, arguments, assert_as_if_never_stopped, assert_density_is_shown,
+    assert_refused, interrupt_script, last_snapshot, refusals, run_script, value, vtk_field)
 
 DENSITY = 7830.0
 LIGHT = 10.0
@@ -25,7 +25,7 @@ K = 0.01
 IN_SPACE = {**BLOCK, "cut_time": 0.04, "heat": "true", "hardness": 0, "wear_coefficient": K, "wear_acceleration": 1000,
             "heat_period": 4e-4, "surface_period": 0.02, "report": "false"}
 OF_SEGMENTS = {**SMALL, "tool": "segments", "start_up": 8e-4, "cycle_time": 2e-4, "wear_coefficient": K,
-               "wear_acceleration": 20000, "wear_period": 50, "report": "false"}
+               "wear_acceleration": 20000, "wear_period": 50, "report": "false", "control_radius": 3}
 
 
 def script(name):
@@ -180,12 +180,15 @@ def test_rubbed_segments_are_the_hot_ones_and_wear_by_their_own_temperature(of_s
 
 
 def test_vtk_shows_temperatures_of_facets_at_their_vertices(of_segments):
-    lines = sorted((of_segments.out / "vtk").glob("tool.*.vtk"))[-1].read_text(encoding="utf-8").splitlines()
-    count, first = int(lines[4].split()[1]), lines.index("SCALARS temperature double 1") + 2
-    shown = np.array(lines[first:first + count], float)
+    shown = vtk_field(sorted((of_segments.out / "vtk").glob("tool.*.vtk"))[-1], "temperature")
     nodes = last_snapshot(of_segments.out)["temperature"]
-    assert count == len(last_snapshot(of_segments.out)["tool_vertices"]) and len(lines) == first + count
+    assert len(shown) == len(last_snapshot(of_segments.out)["tool_vertices"])
     assert shown.min() == pytest.approx(293.15, abs=0.01) and 293.2 < shown.max() <= nodes.max() + 1e-6
+
+
+def test_the_density_map_of_a_cut(of_segments, in_space):
+    assert_density_is_shown(of_segments.out, 3, 2500.0)
+    assert "density" not in last_snapshot(in_space.out)
 
 
 def test_a_hot_tool_of_segments_wears_more_per_work(of_segments, of_segments_hot):

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from tests.running import (
-    ROOT, arguments, assert_as_if_never_stopped, assert_refused, interrupt_script, refusals, run_script, value)
+    ROOT, arguments, assert_as_if_never_stopped, assert_density_is_shown, assert_refused, interrupt_script, refusals,
+    run_script, value)
 
 SCRIPT = ROOT / "yade_scripts/uniaxial_3d.py"
 EXACT = ROOT / "tests/scenes/scripts/laboratory_3d.py"
@@ -28,7 +29,7 @@ def exact(out, **values):
 
 @pytest.fixture(scope="module")
 def compressed(tmp_path_factory):
-    return laboratory(tmp_path_factory.mktemp("compressed") / "out", report="true", vtk="true")
+    return laboratory(tmp_path_factory.mktemp("compressed") / "out", report="true", vtk="true", control_radius=2)
 
 
 @pytest.mark.parametrize("kt, tolerance", [(KN, 0.005), (KN / 5, 0.04)])
@@ -80,6 +81,8 @@ def test_a_block_fails_and_leaves_its_balance_and_page(compressed):
     assert "Stress and strain" in page and "slab behind its middle" in page
     assert (compressed.out / "figures/failure.png").stat().st_size > 1e4
     assert any("displacement_z" in file.read_text(encoding="utf-8") for file in (compressed.out / "vtk").iterdir())
+    assert_density_is_shown(compressed.out, 2, 2500.0)
+    assert (compressed.out / "figures/density.png").stat().st_size > 1e4
 
 
 def test_a_block_is_weaker_in_tension_and_as_stiff(compressed, tmp_path):

@@ -4,8 +4,8 @@ import signal
 import pytest
 
 from tests.running import (
-    ROOT, arguments, assert_as_if_never_stopped, assert_refused, checks_of, history, interrupt_script, refusals,
-    run_script, value)
+    ROOT, arguments, assert_as_if_never_stopped, assert_density_is_shown, assert_refused, checks_of, history,
+    interrupt_script, refusals, run_script, value)
 
 SCRIPT = ROOT / "yade_scripts/steady_cut.py"
 SMALL = dict(window_behind=0.016, window_ahead=0.048, window_height=0.026, radius_min=0.8e-3, radius_max=1.2e-3,
@@ -13,7 +13,8 @@ SMALL = dict(window_behind=0.016, window_ahead=0.048, window_height=0.026, radiu
              tool_kn=2e10, tool_kt=2e10, contact_damping=0.2, ramp_length=2e-3, cut_length=0.02, report="false")
 """A steady cut in miniature."""
 LAWS = {"brittle": {},
-        "softening": dict(bond_law="cohesive", kt=8e9, rotation="blocked", mu=0.3, weibull_modulus=4, heat="true")}
+        "softening": dict(bond_law="cohesive", kt=8e9, rotation="blocked", mu=0.3, weibull_modulus=4, heat="true",
+                          control_radius=2.5)}
 
 
 def steady_cut(out, *flags, **values):
@@ -39,6 +40,9 @@ def test_the_window_moves_and_the_balance_closes(never):
     assert abs(energy["residual"]) < part * energy["tool_work"]
     assert history(never.out)["distance [m]"][-1] == pytest.approx(SMALL["cut_length"], abs=2e-4)
     assert value(never, "window_passed") >= 4 * (SMALL["window_behind"] + SMALL["window_ahead"]) / 16
+    if "control_radius" in never.options:
+        # Absent particles have no density, reduced radii no less mass.
+        assert_density_is_shown(never.out, never.options["control_radius"], 2500.0)
 
 
 def test_a_cut_goes_on_as_if_it_was_never_stopped(never, tmp_path):

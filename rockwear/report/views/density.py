@@ -1,16 +1,16 @@
 """Density map: how loose the rock is around each particle, in the plane and in space."""
-import numpy as np
 from matplotlib.cm import ScalarMappable
 from matplotlib.collections import PolyCollection
 from matplotlib.colors import Normalize
 
 from rockwear.report import palette
-from rockwear.report.bodies import has_tool, in_space, place, tool_loops
+from rockwear.report.bodies import has_tool, place, tool_loops
 from rockwear.report.instants import course, course_in_space, moment
 from rockwear.report.page import Section, number
 from rockwear.report.plane import cut_limits
 from rockwear.report.plots import MM, discs, frame, grid, save
-from rockwear.report.solid import READABLE, SIDE, behind_middle, paint, panels_without_axes, sphere_polygons, tool_polygons
+from rockwear.report.solid import (
+    READABLE, SIDE, paint, panels_without_axes, sphere_polygons, tool_polygons, whole_frame)
 
 LOOSEST = 0.6
 """Density, over that of the whole rock, from which on colours differ."""
@@ -21,11 +21,11 @@ def density(run):
     if not run.has("density", "rock_positions", "rock_radii"):
         return None
     control = number(run.parameter("control_radius"))
+    figure = in_plane_figure(run) if "box" in run.model else in_space_figure(run)
     return Section("Density of the rock", (
         f"Mean density around each particle, within {control} of its radii, over that of the whole rock "
         "[Rojek 2003, eq. 7.9]. Cracks and chips are loose. At free surfaces, walls and the tool a part of the control "
-        "volume holds no rock: with 3 radii the outermost particles show about 0.7."), [save(run, "density", in_space_figure(run) if in_space(run) else
-                                                   in_plane_figure(run))])
+        "volume holds no rock: with 3 radii the outermost particles show about 0.7."), [save(run, "density", figure)])
 
 
 def relative(run, shot):
@@ -36,7 +36,7 @@ def relative(run, shot):
 def instants(run):
     """{label: snapshot}: of a cut its course, of a specimen begin and end."""
     if has_tool(run):
-        return course_in_space(run, 3) if in_space(run) else course(run)
+        return course(run) if "box" in run.model else course_in_space(run, 3)
     return {moment(run, k).split(", ")[-1]: k for k in sorted({0, len(run.times) - 1})}
 
 
@@ -67,11 +67,14 @@ def in_space_figure(run):
     figure, panels = panels_without_axes(12, 4, 1, max(len(shown), 2))
     for axes, (label, k) in zip(panels, shown.items()):
         shot = run.snapshot(k)
-        slab = behind_middle(shot["rock_positions"], run.model["rock_radii"])
-        colours = palette.DENSITY(norm(relative(run, shot)[slab]))
-        tool = [tool_polygons(run, shot, SIDE, cut_open=True)] if has_tool(run) else []
-        paint(axes, sphere_polygons(shot["rock_positions"][slab], run.model["rock_radii"][slab], colours, SIDE), *tool,
-              darkest=READABLE)
+        places, radii = shot["rock_positions"], run.model["rock_radii"]
+        slab = abs(places[:, 2] + radii) < 2 * radii
+        rock = sphere_polygons(places[slab], radii[slab], palette.DENSITY(norm(relative(run, shot)[slab])), SIDE)
+        if has_tool(run):
+            tool = tool_polygons(run, shot, SIDE, cut_open=True)
+            paint(axes, rock, tool, darkest=READABLE, frame=whole_frame(run, SIDE))
+        else:
+            paint(axes, rock, darkest=READABLE)
         axes.set_title(label)
     figure.colorbar(ScalarMappable(norm, palette.DENSITY), ax=panels, label="density over that of the rock", shrink=0.8,
                     extend="both")
