@@ -1,4 +1,5 @@
-"""Heat in rock and tool: friction, conduction, exchange across contacts, convection from the free surface."""
+"""Heat in rock and tool: friction, conduction, exchange across contacts, convection and radiation from free surfaces.
+"""
 import math
 
 import numpy as np
@@ -19,12 +20,13 @@ class Heat(Engine):
     (particle or facet) and a rock particle in contact exchange h A (T_tool - T_rock) [Rojek 2014, eq. 66] during their
     contact time; A is the piece's contact area, but no more than the rock particle is wide. It is the exact exchange of
     two lumps, which cannot overshoot. Convection acts on the free surface [Rojek 2014, eq. 42], which is found anew
-    every surface_period.
+    every surface_period, and so does radiation, e sigma A (T^4 - T_ambient^4) [Rojek 2003, 7.2]. Of surfaces that face
+    each other, in a crack say, each radiates to the surroundings.
 
     network: kernels.conduction.HeatNetwork; bonds, rock_friction, tool_contact: engines; rock: the specimen; body:
     model.thermal_body.ThermalBody of the tool;
     heat_fraction: chi; tool_share: part of the heat of tool-rock friction that the tool takes;
-    contact_conductance, convection: W/m2K; ambient: K; surface_period: s;
+    contact_conductance, convection: W/m2K; emissivity: e, 0 for no radiation; ambient: K; surface_period: s;
     rock_paths, tool_paths: pairs (k, 2) of particles or nodes that exchange heat, and their conductances (k,) W/K;
     conduction: False leaves all heat where it arises;
     wear_acceleration: A; a particle or node that accelerated wear removes takes 1 / A of its heat along, the rest goes
@@ -37,13 +39,14 @@ class Heat(Engine):
     name = "heat"
 
     def __init__(self, *, network, bonds, rock_friction, tool_contact, rock, body, heat_fraction, tool_share,
-                 contact_conductance, convection, ambient, rock_paths, tool_paths, surface_period,
+                 contact_conductance, convection, ambient, rock_paths, tool_paths, surface_period, emissivity=0.0,
                  wear_acceleration=1.0, conduction=True, shank_temperature=None, time_scale=lambda: 1.0, period=1):
         super().__init__(period=period)
         self.network, self.bonds, self.rock_friction, self.tool_contact = network, bonds, rock_friction, tool_contact
         self.rock, self.body, self.n = rock, body, rock.count
         self.heat_fraction, self.tool_share, self.conduction = heat_fraction, tool_share, conduction
-        self.contact_conductance, self.convection, self.ambient = contact_conductance, convection, ambient
+        self.contact_conductance, self.ambient = contact_conductance, ambient
+        self.convection, self.emissivity = convection, emissivity
         self.rock_paths, self.tool_paths = rock_paths, tool_paths
         self.below, self.kept_share = neighbours(tool_paths[0], body.count), 1 - 1 / max(wear_acceleration, 1.0)
         self.facing = ~among(rock_paths[0], bonds.pairs, self.n)
@@ -114,10 +117,10 @@ class Heat(Engine):
         moved = (temperature[tool] - temperature[rock]) * lumped * -np.expm1(-passed / lumped)
         heat += np.bincount(rock, moved, heat.size) - np.bincount(tool, moved, heat.size)
 
-    # ---- contacts that conduct, surfaces that convect
+    # ---- contacts that conduct, surfaces that convect and radiate
 
     def find_surfaces(self):
-        """Find which contacts conduct and which surfaces convect now."""
+        """Find which contacts conduct and which surfaces convect and radiate now."""
         self.surface_time = self.clock
         self.rock_friction.find_contacts()
         rock, tool = self._rock_now(), self._tool_now()
@@ -126,6 +129,8 @@ class Heat(Engine):
         exposed = np.concatenate([self._exposed_rock(), self._exposed_tool()])
         present = np.flatnonzero(np.concatenate([np.ones(self.n, bool), self.body.alive]))
         self.network.convect(present, self.convection * exposed[present], self.ambient)
+        if self.emissivity:
+            self.network.radiate(present, self.emissivity * exposed[present], self.ambient)
 
     def leave_rock(self):
         """Nothing touches the tool any more: all of its surface is free."""

@@ -8,6 +8,7 @@ import numpy as np
 from scipy.special import erfc
 
 from rockwear.kernels.checks import not_negative, positive, require
+from rockwear.kernels.conduction import STEFAN_BOLTZMANN
 
 _TERMS = np.arange(1, 402, 2)  # odd numbers of the sine series
 _EARLY = 0.05  # Fourier number below which the images converge faster than the sine series
@@ -84,6 +85,30 @@ def two_nodes(t, *, capacities, conductance, temperatures):
     mean = (first * start[0] + second * start[1]) / (first + second)
     rate = not_negative("conductance", conductance, "W/K") * (1 / first + 1 / second)
     return mean + np.multiply.outer(np.exp(-rate * np.asarray(t, float)), start - mean)
+
+
+def radiative_cooling_time(kelvin, *, first, surroundings, capacity, area_times_emissivity):
+    """Time that a body of one temperature takes to radiate from T0 down to T, s: C dT/dt = -sigma eA (T^4 - Ts^4).
+
+        t = C/(sigma eA) (F(T0) - F(T)),   F = ln((T - Ts)/(T + Ts))/(4 Ts^3) - atan(T/Ts)/(2 Ts^3),
+        without surroundings   F = -1/(3 T^3),   that is   T = T0 (1 + 3 sigma eA T0^3 t/C)^(-1/3)
+
+    kelvin: T, K, scalar or array, between Ts and T0; first: T0, K; surroundings: Ts, K, at least 0; capacity: C, J/K;
+    area_times_emissivity: eA, m2
+    """
+    kelvin, cold = np.asarray(kelvin, float), not_negative("surroundings", surroundings, "K")
+    first = positive("first", first, "K")
+    require(((kelvin > cold) & (kelvin <= first)).all(), "kelvin", kelvin.tolist(),
+            f"above {cold:g} and at most {first:g}", "K")
+
+    def primitive(t):
+        if cold == 0:
+            return -1 / (3 * t**3)
+        return (np.log((t - cold) / (t + cold)) - 2 * np.arctan(t / cold)) / (4 * cold**3)
+
+    rate = STEFAN_BOLTZMANN * positive("area_times_emissivity", area_times_emissivity, "m^2") / positive(
+        "capacity", capacity, "J/K")
+    return (primitive(first) - primitive(kelvin)) / rate
 
 
 def rod_decay_rate(*, length, diffusivity, mode=1):

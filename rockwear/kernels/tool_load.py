@@ -36,19 +36,20 @@ class MeanLoad:
 
 
 def tool_under_load(*, capacity, paths, temperature, friction_heat, contact, rock_temperature, convection, ambient,
-                    shank=(), shank_temperature=None):
+                    radiation=0.0, shank=(), shank_temperature=None):
     """HeatNetwork of a tool that cuts steadily, from means over a pass [Rojek 2003, 11.3].
 
     Each node takes up its mean friction heat and gives heat to the rock it touches and to the air,
 
-        C dT/dt = q - G (T - T_rock) - hA (T - T_air) + conduction.
+        C dT/dt = q - G (T - T_rock) - hA (T - T_air) - sigma eA (T^4 - T_air^4) + conduction.
 
     The rock passes by and keeps its mean temperature of the pass. A pass takes milliseconds, the warming of a tooth
     minutes: a ratio of 10^4, over which fluctuations of the force average out.
 
     capacity (m,) J/K; paths: pairs (k, 2) and conductances (k,) W/K; temperature (m,) K at first; friction_heat (m,) W;
-    contact (m,) W/K, G; rock_temperature (m,) K; convection (m,) W/K, hA; ambient: K of the air; shank: nodes held at
-    shank_temperature, K. Raises ParameterError as HeatNetwork does; steady_state() does where a load has no way out.
+    contact (m,) W/K, G; rock_temperature (m,) K; convection (m,) W/K, hA; ambient: K of the air; radiation: scalar
+    or (m,) m2, eA; shank: nodes held at shank_temperature, K. Raises ParameterError as HeatNetwork does; steady_state()
+    does where a load has no way out.
     """
     network = HeatNetwork(capacity=capacity, edges=paths[0], conductance=paths[1], temperature=temperature)
     every = np.arange(len(network.temperature))
@@ -57,6 +58,8 @@ def tool_under_load(*, capacity, paths, temperature, friction_heat, contact, roc
     outside = np.divide(contact * rock_temperature + convection * ambient, whole,
                         out=np.full(every.size, float(ambient)), where=whole > 0)
     network.convect(every, whole, outside)
+    if np.any(radiation):
+        network.radiate(every, radiation, ambient)
     if len(shank):
         network.fix(shank, shank_temperature)
     return network

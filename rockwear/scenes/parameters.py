@@ -223,7 +223,11 @@ HEAT = Group("heat", (
               {"shank": ("fixed",)}),
     Parameter("contact_conductance", 1500.0, "W/m2K", number(0), "between tool and rock", "[Rojek 2014, 5.2]"),
     Parameter("convection", 30.0, "W/m2K", number(0), "at the free surface, natural air", "[Rojek 2003, 7.5]"),
-    Parameter("ambient_temperature", 293.15, "K", number(0), "of the air", "[Rojek 2003, 9.2]"),
+    Parameter("emissivity", 0.0, "", number(0, 1), "of the free surface of rock and tool, which radiates beside "
+              "convection; 0: no radiation", "[Rojek 2003, 7.5] counts radiation within convection; its 60 W/m2K at "
+              "1000 C are an emissivity of 0.4"),
+    Parameter("ambient_temperature", 293.15, "K", number(0), "of the air, and of what is around that radiates back",
+              "[Rojek 2003, 9.2]"),
     Parameter("rock_temperature", 293.15, "K", number(0), "of the rock at first", "[Rojek 2003, 9.2]")),
              {"heat": (True,)})
 

@@ -101,8 +101,8 @@ def heat(v):
         rock=Material(density=v.rock_density, specific_heat=v.rock_specific_heat, conductivity=v.rock_conductivity),
         tool=Material(density=v.tool_density, specific_heat=v.tool_specific_heat, conductivity=v.tool_conductivity),
         paths=v.bond_conductance, fraction=v.heat_fraction, sharing=v.heat_sharing,
-        contact_conductance=v.contact_conductance,
-        convection=v.convection, rock_temperature=v.rock_temperature, tool_temperature=v.tool_temperature,
+        contact_conductance=v.contact_conductance, convection=v.convection, emissivity=v.emissivity,
+        rock_temperature=v.rock_temperature, tool_temperature=v.tool_temperature,
         ambient=v.ambient_temperature, shank_temperature=v.shank_temperature if v.shank == "fixed" else None,
         conduction=v.conduction)
 

@@ -149,11 +149,12 @@ class Passes(Cycles):
         """HeatNetwork of the tool from the end of its pass on, under the mean load of the pass."""
         model, tool, heat = self.scene.heat_model, self.scene.tool.model, self.scene.heat
         friction_heat, contact, rock_temperature, temperature = self.passes[f"{velocity:g}"]
-        air = model.convection * free_surface(positions=tool.positions, radii=tool.radii)
-        air[tool.fixed | (contact > 0)] = 0.0
+        free = free_surface(positions=tool.positions, radii=tool.radii)
+        free[tool.fixed | (contact > 0)] = 0.0
         return tool_under_load(capacity=heat.tool_capacity, paths=heat.tool_paths, temperature=temperature,
                                friction_heat=friction_heat, contact=contact, rock_temperature=rock_temperature,
-                               convection=air, ambient=model.ambient,
+                               convection=model.convection * free, radiation=model.emissivity * free,
+                               ambient=model.ambient,
                                shank=np.flatnonzero(tool.fixed) if shank == "fixed" else (),
                                shank_temperature=self.shank_temperature)
 

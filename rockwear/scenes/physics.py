@@ -70,12 +70,14 @@ class ToolWear:
 
 @dataclass(frozen=True)
 class HeatModel:
-    """Heat in rock and tool [Rojek 2003, ch. 7; Rojek 2014, 3.2-3.5]: friction, conduction, exchange, convection.
+    """Heat in rock and tool [Rojek 2003, ch. 7; Rojek 2014, 3.2-3.5]: friction, conduction, exchange, convection,
+    radiation.
 
     rock, tool: model.materials.Material; paths: how particles conduct, one of kernels.conduction.PATHS; fraction:
     part of friction work that becomes heat; sharing: "effusivity" or "equal"; contact_conductance, convection: W/m2K;
-    rock_temperature, tool_temperature, ambient: K at first and of the air; shank_temperature: K at which the shank
-    holds the tool, None where it is insulated; conduction: False leaves all heat where it arises.
+    emissivity: of free surfaces; rock_temperature, tool_temperature, ambient: K at first and of the air;
+    shank_temperature: K at which the shank holds the tool, None where it is insulated; conduction: False leaves all
+    heat where it arises.
     """
 
     rock: Material
@@ -85,6 +87,7 @@ class HeatModel:
     sharing: str
     contact_conductance: float
     convection: float
+    emissivity: float
     rock_temperature: float
     tool_temperature: float
     ambient: float
@@ -102,8 +105,8 @@ class HeatModel:
                     body=body,
                     heat_fraction=self.fraction, tool_share=self._tool_share(),
                     contact_conductance=self.contact_conductance,
-                    convection=self.convection, ambient=self.ambient, rock_paths=rock.paths(self.paths,
-                                                                                            self.rock.conductivity),
+                    convection=self.convection, emissivity=self.emissivity, ambient=self.ambient,
+                    rock_paths=rock.paths(self.paths, self.rock.conductivity),
                     tool_paths=body.paths(self.paths, self.tool.conductivity), conduction=self.conduction,
                     shank_temperature=self.shank_temperature, surface_period=surface_period,
                     wear_acceleration=wear_acceleration, time_scale=time_scale, period=period)

@@ -146,7 +146,7 @@ class Turns(Programme):
 
         Each tool node takes the mean power of its friction, and exchanges heat with the water and, by the mean
         conductance, with the rock that it touched; then it cools. peak, cooled: K of the hottest part at the end of
-        cutting and of cooling; mean: K of the whole then; absorbed, released: J/m of friction and to water and rock,
+        cutting and of cooling; mean: K of the whole then; absorbed, released: J/m of friction, and to water and rock,
         which become equal in the stationary state [Rojek 2014, 5.3]. No heat goes with worn particles here.
         """
         scene, model = self.scene, self.scene.heat_model
@@ -178,8 +178,9 @@ class Turns(Programme):
             network.source(tool, 0.0)
             network.convect(tool, water, model.ambient)
             network.advance(self.turn_time - self.cut_time)
-            absorbed, released = (abs(network.balance[name] - balance[name]) for name in ("generated", "convected"))
-            rows.append((turn, peak, *hot_and_mean(network, rock), absorbed, released))
+            change = {name: now - balance[name] for name, now in network.balance.items()}
+            rows.append((turn, peak, *hot_and_mean(network, rock), change["generated"],
+                         -change["convected"] - change["radiated"]))
         return rows
 
 

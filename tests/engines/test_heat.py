@@ -33,6 +33,14 @@ def test_facets_of_one_node_exchange_heat_as_one_contact(found, space, contact):
 
 
 @pytest.mark.parametrize("space", SPACES)
+def test_free_surfaces_of_tool_and_rock_radiate(found, space):
+    got = found[space]["radiating"]
+    assert got["coldest"] < 900 and got["dark"] > 20 and got["rock_cooled"] > 0.1
+    assert got["error"] < 0.5 and got["rock"] < 1e-3 * got["rock_cooled"]
+    assert got["radiated"] < 0 and got["missing"] < 1e-13
+
+
+@pytest.mark.parametrize("space", SPACES)
 @pytest.mark.parametrize("acceleration", ["1.0", "10000.0"])
 def test_a_receding_surface_takes_nodes_and_the_balance_closes(found, space, acceleration):
     got = found[space]["worn"][acceleration]

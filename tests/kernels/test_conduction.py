@@ -8,7 +8,7 @@ from rockwear.kernels import voronoi as voronoi
 from rockwear.kernels.checks import ParameterError
 from rockwear.kernels.packing import pack
 from rockwear.kernels.conduction import (
-    PATHS, HeatNetwork, bar_conductance, calibrated_conductance, effective_conductivity, effusivity,
+    PATHS, STEFAN_BOLTZMANN, HeatNetwork, bar_conductance, calibrated_conductance, effective_conductivity, effusivity,
     effusivity_share, paths)
 
 
@@ -380,6 +380,25 @@ def test_radiation_at_1500_K_stays_bounded_and_cools():
         network.advance(5.0)
         peaks.append(network.temperature.max())
     assert np.all(np.diff(peaks) <= 0) and 300 < peaks[3] < 310 and peaks[-1] == pytest.approx(300.0)
+
+
+@pytest.mark.parametrize("surroundings", [0.0, 293.0])
+def test_a_radiating_body_cools_exactly_in_the_limit_of_short_steps(surroundings):
+    """From 1500 to 700 K; without surroundings T = T0 (1 + 3 sigma eA T0^3 t / C)^(-1/3)."""
+    body = dict(capacity=20.0, area_times_emissivity=0.5)
+    seconds = float(analytic.radiative_cooling_time(700.0, first=1500.0, surroundings=surroundings, **body))
+    if not surroundings:
+        growth_of_t = 1 + 3 * STEFAN_BOLTZMANN * 0.5 * 1500.0**3 * seconds / 20.0
+        assert 1500.0 * growth_of_t**(-1 / 3) == pytest.approx(700.0, rel=1e-12)
+    errors = []
+    for steps in (25, 50, 100, 200, 0):
+        network = HeatNetwork(capacity=[20.0], edges=[], conductance=1.0, temperature=1500.0)
+        network.radiate(0, 0.5, surroundings)
+        assert network.advance(seconds, **({"step": seconds / steps} if steps else {})) == steps or not steps
+        errors.append(abs(network.temperature[0] - 700.0))
+    assert np.polyfit(np.log([25, 50, 100, 200]), np.log(errors[:4]), 1)[0] == pytest.approx(-1, abs=0.06)
+    # Of the 800 K that it has cooled by; by itself the network takes twelve steps.
+    assert errors[3] < 0.0025 * 800 and errors[4] < 0.045 * 800
 
 
 def test_radiation_stiffens_within_one_visit():

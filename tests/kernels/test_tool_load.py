@@ -32,6 +32,14 @@ def test_with_an_insulated_shank_all_heat_goes_to_rock_and_air():
     assert network.temperature == pytest.approx(end, rel=1e-9)
 
 
+def test_with_radiation_too_all_heat_goes_out():
+    heat, shining = at(slice(0, 3), 7e3), at(slice(0, 8), 0.3)
+    network = tool_under_load(**BAR, friction_heat=heat, contact=at(0, 1.5), convection=at(5, 0.2), radiation=shining)
+    end = network.steady_state()
+    out = 1.5 * (end[0] - 290.0) + 0.2 * (end[5] - 280.0) + 5.670374419e-8 * shining @ (end**4 - 280.0**4)
+    assert out == pytest.approx(heat.sum(), rel=1e-10) and end.max() > 600
+
+
 def test_no_load_leaves_the_tool_between_rock_and_air():
     network = tool_under_load(**BAR, friction_heat=np.zeros(N), contact=at(0, 1.0), convection=at(0, 1.0))
     assert network.steady_state() == pytest.approx(np.full(N, 285.0), rel=1e-12)

@@ -53,6 +53,8 @@ BROKEN_RULES = [
     ({"wear_law": "modes", "wear_modes": "0.01/1/x"}, "wear_modes = 0.01/1/x: must be a number"),
     ({"wear_law": "power", "wear_exponent": 1e300}, "wear_exponent = 1e+300: must be at most 20"),
     ({"contact_damping": 2}, "contact_damping = 2: must be at most 1"),
+    ({"emissivity": 1.5}, "emissivity = 1.5: must be at most 1"),
+    ({"emissivity": -0.1}, "emissivity = -0.1: must be at least 0"),
     ({"heat_fraction": 1.5}, "heat_fraction = 1.5: must be at most 1"),
     ({"tool_temperature": 1500},
      "tool_temperature = 1500 K: must be inside the hardness table of MET91, 273.15 to 873.15"),

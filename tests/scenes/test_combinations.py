@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from rockwear.kernels.archard import MET91
+from rockwear.kernels.conduction import STEFAN_BOLTZMANN
 from rockwear.model.facet_tool import FacetTool
 from rockwear.model.materials import Material
 from rockwear.model.particle_tool import LayeredTool, Tool
@@ -25,7 +26,8 @@ K = 0.01
 IN_SPACE = {**BLOCK, "cut_time": 0.04, "heat": "true", "hardness": 0, "wear_coefficient": K, "wear_acceleration": 1000,
             "heat_period": 4e-4, "surface_period": 0.02, "report": "false"}
 OF_SEGMENTS = {**SMALL, "tool": "segments", "start_up": 8e-4, "cycle_time": 2e-4, "wear_coefficient": K,
-               "wear_acceleration": 20000, "wear_period": 50, "report": "false", "control_radius": 3}
+               "wear_acceleration": 20000, "wear_period": 50, "report": "false", "control_radius": 3,
+               "emissivity": 0.9}
 
 
 def script(name):
@@ -186,6 +188,14 @@ def test_vtk_shows_temperatures_of_facets_at_their_vertices(of_segments):
     assert shown.min() == pytest.approx(293.15, abs=0.01) and 293.2 < shown.max() <= nodes.max() + 1e-6
 
 
+def test_a_surface_that_is_little_warmer_radiates_as_by_a_coefficient(of_segments):
+    """e sigma (T^4 - T_air^4) lies between 4 e sigma T^3 (T - T_air) at both temperatures; convection has 30 W/m2K."""
+    heat, warmest = of_segments.summary["balances"]["heat"], value(of_segments, "tool_temperature_max")
+    ratio = heat["radiated"] / heat["convected"]
+    assert heat["convected"] < 0
+    assert 4 * 0.9 * STEFAN_BOLTZMANN * 293.15**3 / 30 < ratio < 4 * 0.9 * STEFAN_BOLTZMANN * warmest**3 / 30
+
+
 def test_the_density_map_of_a_cut(of_segments, in_space):
     assert_density_is_shown(of_segments.out, 3, 2500.0)
     assert "density" not in last_snapshot(in_space.out)
@@ -261,6 +271,7 @@ def test_under_tension_only_shear_alone_breaks_no_bond(tmp_path):
 
 def test_segments_without_heat_wear_by_the_hardness_at_their_temperature(tmp_path):
     values = {**OF_SEGMENTS, "start_up": 4e-4, "cycles": 0, "heat": "false", "reshape": "false"}
+    values.pop("emissivity")
     cold, hot = (run("tooth_cycles", tmp_path / str(kelvin), **values, tool_temperature=kelvin)
                  for kelvin in (300, 800))
     assert_balances_close(hot)

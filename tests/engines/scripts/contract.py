@@ -193,7 +193,8 @@ class ParticleCut(World):
                               edges=np.empty((0, 2), int), conductance=0.0)
         self.heat = Heat(network=network, bonds=self.bonds, rock_friction=self.rock_friction, tool_contact=self.contact,
                          rock=rock, body=body, heat_fraction=0.9, tool_share=0.6, contact_conductance=1e6,
-                         convection=1e4, ambient=280.0, rock_paths=(rock.pairs, np.full(len(rock.pairs), 3.0)),
+                         convection=1e4, emissivity=0.9, ambient=280.0,
+                         rock_paths=(rock.pairs, np.full(len(rock.pairs), 3.0)),
                          tool_paths=(tool.pairs, np.full(len(tool.pairs), 50.0)), surface_period=2e-6,
                          wear_acceleration=10.0, shank_temperature=320.0, period=8)
         expansion = Expansion(coefficient=1e-5, rock=rock, reference=290.0, bonds=self.bonds, period=8,

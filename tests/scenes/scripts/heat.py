@@ -12,7 +12,7 @@ from yade import O, utils
 
 from rockwear.engines.heat import Heat
 from rockwear.kernels.boundary import area_vectors, prism
-from rockwear.kernels.conduction import HeatNetwork
+from rockwear.kernels.conduction import STEFAN_BOLTZMANN, HeatNetwork
 from rockwear.kernels.polygon import tooth
 from rockwear.kernels.voronoi import cells
 from rockwear.model.facet_tool import FacetTool
@@ -222,6 +222,28 @@ def restart(make):
                          and heat.balance() == again.balance() and np.array_equal(body.alive, other_body.alive))}
 
 
+def radiating(make):
+    """Nodes that conduct no heat and rock particles far from each other radiate for themselves into the cold: in time
+    t each comes to T (1 + 3 sigma eA T^3 t / C)^(-1/3), in many short visits."""
+    tool, body = make()
+    empty = np.empty((0, 2), int), np.empty(0)
+    heat = engine(body, Engines(tool.count, body.positions.shape[1]), emissivity=0.7, ambient=0.0, tool_paths=empty)
+    state = heat.network.state()
+    state["temperature"][:] = 1400.0
+    heat.network.restore(state)
+    heat.initial_content = heat.network.heat_content
+    sizes = 2 * np.pi * 2e-3 if make is in_plane else 4 * np.pi * 2e-3**2
+    free = np.concatenate([np.full(2, sizes), body.exposed(np.zeros(tool.count, bool))])
+    rate = 3 * STEFAN_BOLTZMANN * 0.7 * free * 1400.0**3 / heat.network.capacity
+    seconds = 4.0 / rate.max()
+    for _ in range(2000):
+        heat.cool(seconds / 2000)
+    exact = 1400.0 * (1 + rate * seconds)**(-1 / 3)
+    return {"coldest": float(exact.min()), "dark": int((free == 0).sum()), "missing": missing(heat),
+            "error": float(abs(heat.network.temperature - exact).max()), "radiated": heat.balance()["radiated"],
+            "rock": float(abs(heat.network.temperature[:2] - exact[:2]).max()), "rock_cooled": 1400.0 - float(exact[0])}
+
+
 def renewed():
     """A whole tool in place of a worn one."""
     tool, body = in_plane()
@@ -262,8 +284,8 @@ def particles():
 MAKERS = {"plane": in_plane, "space": in_space}
 found = {"renewed": renewed(), "particles": particles()}
 for name, maker in MAKERS.items():
-    found[name] = {"friction": friction(maker), "exchange": exchange(maker), "restart": restart(maker),
-                   "worn": {str(a): worn(maker, a) for a in (1.0, 1e4)}}
+    found[name] = {"radiating": radiating(maker), "friction": friction(maker), "exchange": exchange(maker),
+                   "restart": restart(maker), "worn": {str(a): worn(maker, a) for a in (1.0, 1e4)}}
 with open(sys.argv[-1], "w", encoding="utf-8") as file:
     json.dump(found, file)
 os._exit(0)
