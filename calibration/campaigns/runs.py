@@ -1,72 +1,214 @@
-"""Scenes run in processes of their own, so many at a time, each into its folder."""
+"""Scenes run in processes of their own, each into its folder, where a dask scheduler puts them: here or on a cluster."""
+import argparse
+import asyncio
+import importlib.util
+import logging
 import os
 import subprocess
 import sys
-from concurrent.futures import ThreadPoolExecutor
+import tempfile
 from pathlib import Path
 
+from calibration.campaigns import yade_job
 from calibration.generated import ROOT
+from rockwear.kernels.checks import ParameterError, require
 from rockwear.model import rock_file
 from rockwear.report.folder import RunFolder
 from rockwear.run.checkpoint import digest
 
+PATIENCE = 5
+"""s in which a scheduler must answer."""
+LOST = 10
+"""Workers that a run may lose here before it counts as the cause."""
+
 
 class RunFailed(RuntimeError):
-    """A YADE script ended with an exit code other than 0."""
+    """A YADE script ended with an exit code other than 0 (`code`; None where its workers were lost)."""
+
+    def __init__(self, words, code=None):
+        super().__init__(words)
+        self.code = code
+
+
+def command(script, folder, words=(), threads=1):
+    """[word, ...] that run a YADE script into `folder`."""
+    return ["yade", "-n", "-x", f"-j{threads}", str(ROOT / script), "--out", str(folder), *words]
 
 
 def run_script(script, folder, words=()):
     """Run a YADE script (a path from the root of the repository) into `folder`. Raises RunFailed."""
-    done = subprocess.run(["yade", "-n", "-x", "-j1", str(ROOT / script), "--out", str(folder), *words],
-                          env={**os.environ, "PYTHONPATH": str(ROOT)}, capture_output=True, encoding="utf-8",
-                          stdin=subprocess.DEVNULL)
+    done = subprocess.run(command(script, folder, words), env={**os.environ, "PYTHONPATH": str(ROOT)},
+                          capture_output=True, encoding="utf-8", stdin=subprocess.DEVNULL)
     if done.returncode:
         said = done.stderr.strip().splitlines() or ["nothing said"]
         errors = [line for line in said if line.startswith("error: ")]
-        raise RunFailed(f"{Path(folder).name} ended with {done.returncode}: {(errors or said)[-1]}")
+        raise RunFailed(f"{Path(folder).name} ended with {done.returncode}: {(errors or said)[-1]}", done.returncode)
+
+
+def job(script, folder, words=(), threads=1, environment=None):
+    """The job (campaigns.yade_job) that runs a YADE script into `folder`; its words go to a file beside the folder."""
+    folder = Path(folder).resolve()
+    return {"command": command(script, folder, words, threads), "folder": str(folder), "log": f"{folder}.log",
+            "directory": os.getcwd(), "environment": {"PYTHONPATH": str(ROOT), **(environment or {})}}
+
+
+class Started:
+    """A run that has been queued or was there already."""
+
+    def __init__(self, folder, future=None):
+        self.folder, self.future = Path(folder), future
+
+    def exception(self):
+        """RunFailed, or None; waits for the run."""
+        if self.future is None:
+            return None
+        from distributed.scheduler import KilledWorker
+        try:
+            code, said = self.future.result()
+        except KilledWorker:
+            return RunFailed(f"{self.folder.name} was given up: too many of its workers were lost")
+        except asyncio.CancelledError:
+            return RunFailed(f"{self.folder.name} was given up: the scheduler was lost")
+        return RunFailed(f"{self.folder.name} ended with {code}: {said}", code) if code else None
+
+    def result(self):
+        """Its RunFolder; waits for the run. Raises RunFailed."""
+        failed = self.exception()
+        if failed:
+            raise failed
+        return RunFolder(self.folder)
 
 
 class Runs:
-    """Runs in subfolders of `folder`, `at_once` at a time.
+    """Runs in subfolders of `folder`, `at_once` at a time on this machine, or as many as the workers of `scheduler` (an
+    address) take.
 
     With `keep`, runs that finished with the same values and the same input files are not repeated. Use it as a context:
-    an exception within it waits for the runs under way and starts no others.
+    an exception within it stops the runs under way, which resume when they are started again.
     """
 
-    def __init__(self, folder, *, at_once=2, keep=False):
-        self.folder, self.keep = Path(folder), keep
-        self.pool = ThreadPoolExecutor(at_once)
+    def __init__(self, folder, *, at_once=2, keep=False, scheduler=None):
+        self.folder, self.at_once, self.keep, self.scheduler = Path(folder), at_once, keep, scheduler
+        self.client = self.cluster = self.scratch = None
+        self.futures = []
 
     def __enter__(self):
         return self
 
     def __exit__(self, kind, error, trace):
-        self.pool.shutdown(wait=True, cancel_futures=kind is not None)
+        if self.client is None:
+            return
+        import distributed
+        if kind is None:
+            distributed.wait(self.futures)
+        else:
+            self.client.cancel(self.futures)
+        self.client.close()
+        if self.cluster:
+            self.cluster.close()
+            self.scratch.cleanup()
 
     def start(self, name, script, **values):
-        """Queue a run of `script` (a path from the root of the repository). -> Future of its RunFolder.
-
-        The future raises RunFailed where the run fails.
-        """
-        return self.pool.submit(self._run, self.folder / name, script, values)
-
-    def _run(self, folder, script, values):
+        """Queue a run of `script` (a path from the root of the repository). -> Started."""
+        folder = self.folder / name
         if self.keep and finished(folder, values):
-            return RunFolder(folder)
-        words = [word for name, value in values.items() for word in (f"--{name}", str(value))]
-        if self.keep and (folder / "checkpoint").exists() and not (folder / "summary.json").exists():
-            words.append("--resume")
-        run_script(script, folder, words)
-        return RunFolder(folder)
+            return Started(folder)
+        return self.submit(job(script, folder, [w for key, v in values.items() for w in (f"--{key}", str(v))]))
+
+    def submit(self, one):
+        """Queue a job, whatever there is of it; without `keep` it does not resume. -> Started."""
+        if self.client is None:
+            self._connect()
+        for old in ("summary.json", *([] if self.keep else ["checkpoint/current.json"])):
+            # A worker tells by these what was done since.
+            (Path(one["folder"]) / old).unlink(missing_ok=True)
+        import cloudpickle
+        cloudpickle.register_pickle_by_value(yade_job)
+        self.futures.append(self.client.submit(yade_job.run_on_worker, one, pure=False))
+        return Started(one["folder"], self.futures[-1])
+
+    def wait_for_next(self, started, timeout):
+        """Wait until one of these Started has ended, at most so many seconds."""
+        import distributed
+        try:
+            distributed.wait([one.future for one in started], timeout=timeout, return_when="FIRST_COMPLETED")
+        except (TimeoutError, asyncio.CancelledError):
+            pass
+
+    def _connect(self):
+        if self.scheduler:
+            self.client = connected(self.scheduler)
+            return
+        require_dask()
+        import dask
+        import distributed
+        self.scratch = tempfile.TemporaryDirectory()
+        # A run is dear, and no guess at its duration may send it to a queue while another worker is idle.
+        with dask.config.set({"distributed.scheduler.allowed-failures": LOST,
+                              "distributed.scheduler.unknown-task-duration": "1h"}):
+            self.cluster = distributed.LocalCluster(
+                n_workers=self.at_once, threads_per_worker=1, dashboard_address=None, memory_limit=0,
+                silence_logs=logging.CRITICAL, local_directory=self.scratch.name)
+        self.client = distributed.Client(self.cluster)
+
+
+def require_dask():
+    """Raise ParameterError where dask.distributed is not installed."""
+    require(importlib.util.find_spec("distributed"), "python3-distributed", "missing", "installed (make setup-sweep)")
+
+
+def connected(address):
+    """A client of the dask scheduler at `address`. Raises ParameterError where none answers."""
+    require_dask()
+    import distributed
+    logging.getLogger("distributed").setLevel(logging.CRITICAL)
+    try:
+        return distributed.Client(address, timeout=PATIENCE)
+    except (OSError, ValueError) as error:
+        raise ParameterError("scheduler", address, f"the address of a dask scheduler that answers within {PATIENCE} s "
+                             f"({type(error).__name__})") from None
+
+
+def placement(words):
+    """({option of Runs: value}, the other words) of a command line with --jobs N or --scheduler ADDRESS.
+
+    Ends the program with exit code 2 where they cannot be used.
+    """
+    parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False, argument_default=argparse.SUPPRESS)
+    add_placement(parser)
+    found, others = parser.parse_known_args(words)
+    try:
+        require_dask()
+        if hasattr(found, "scheduler"):
+            connected(found.scheduler).close()
+    except ParameterError as error:
+        print(f"error: {error}", file=sys.stderr)
+        sys.exit(2)
+    return vars(found), others
+
+
+def add_placement(parser):
+    """The options that say where runs run."""
+    where = parser.add_mutually_exclusive_group()
+    where.add_argument("--jobs", dest="at_once", type=_count, metavar="N", help="runs at a time on this machine "
+                       "(default 2)")
+    where.add_argument("--scheduler", metavar="ADDRESS", help="of a dask scheduler, tcp://HOST:PORT, whose workers see "
+                       "the same folders")
+
+
+def _count(word):
+    if not word.isdecimal() or int(word) < 1:
+        raise argparse.ArgumentTypeError(f"{word} is not a number of at least 1")
+    return int(word)
 
 
 def wait_for(jobs, words):
-    """Wait for runs {key: Future of its RunFolder}; print words(key, folder) of each, or why it failed. -> 1 where one
-    failed, else 0."""
+    """Wait for runs {key: Started}; print words(key, folder) of each, or why it failed. -> 1 where one failed, else
+    0."""
     failed = 0
-    for key, job in jobs.items():
+    for key, one in jobs.items():
         try:
-            print(words(key, job.result()), flush=True)
+            print(words(key, one.result()), flush=True)
         except RunFailed as error:
             print(error, file=sys.stderr, flush=True)
             failed = 1

@@ -4,6 +4,8 @@ import html
 import math
 from dataclasses import dataclass, field
 from string import Template
+from typing import NamedTuple
+from urllib.parse import quote
 
 from rockwear.report import palette
 
@@ -109,14 +111,27 @@ def words(name):
     return name.replace("_", " ")
 
 
+class Link(NamedTuple):
+    """A cell of a table that leads to a place."""
+
+    text: str
+    place: str
+
+
+def _cell(content):
+    if isinstance(content, Link):
+        return f'<a href="{html.escape(quote(content.place))}">{html.escape(content.text)}</a>'
+    return html.escape(str(content))
+
+
 def table(rows, header=(), caption=""):
     """An html table; every cell but the first of a row is set as a number."""
     parts = [f"<caption>{html.escape(caption)}</caption>"] if caption else []
     if header:
         parts.append("<tr>" + "".join(f"<th>{html.escape(str(cell))}</th>" for cell in header) + "</tr>")
     for first, *others in rows:
-        cells = "".join(f'<td class="number">{html.escape(str(cell))}</td>' for cell in others)
-        parts.append(f"<tr><td>{html.escape(str(first))}</td>{cells}</tr>")
+        cells = "".join(f'<td class="number">{_cell(cell)}</td>' for cell in others)
+        parts.append(f"<tr><td>{_cell(first)}</td>{cells}</tr>")
     return "<table>" + "\n".join(parts) + "</table>"
 
 

@@ -14,7 +14,7 @@ import numpy as np
 import yade
 
 from rockwear import __version__, report
-from rockwear.run import checkpoint, parameters, servers
+from rockwear.run import checkpoint, lock, parameters, servers
 from rockwear.engines.base import RunEnded
 from rockwear.engines.recorder import write_table
 from rockwear.kernels.checks import ParameterError, require
@@ -145,6 +145,7 @@ class Run:
             (self.folder / "snapshots").mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise ParameterError("out", str(self.folder), f"a folder that can be written ({error.strerror})") from None
+        self.lock = lock.hold(self.folder)
         if self.values["resume"]:
             state, directory = checkpoint.load(self.folder / "checkpoint", self.identity)
             self.scene.restore(state["scene"], directory, self.folder)

@@ -147,18 +147,34 @@ def _batch_table():
     place = os.environ.get("YADE_BATCH")
     if not place:
         return None
-    from yade.utils import TableParamReader
     table, line = place.rsplit(":", 1)
-    # YADE's reader drops the last character of every line, also where it is no line break.
-    require(Path(table).read_bytes().endswith(b"\n"), "table", table, "closed by a line break")
-    return int(line), TableParamReader(table).paramDict()
+    return int(line), read_table(table)
+
+
+def read_table(path):
+    """{number of the line: {column: text}} of a yade-batch table, by YADE's own reader. Raises ParameterError."""
+    from yade.utils import TableParamReader
+    try:
+        # YADE's reader drops the last character of every line, also where it is no line break.
+        require(Path(path).read_bytes().endswith(b"\n"), "table", str(path), "closed by a line break")
+        return TableParamReader(str(path)).paramDict()
+    except OSError as error:
+        raise ParameterError("table", str(path), f"a file that can be read ({error.strerror})") from None
+    except (IndexError, RuntimeError, UnicodeError):
+        raise ParameterError("table", str(path), "a table of yade-batch: a header, then a cell a column in every row"
+                             ) from None
+
+
+def of_row(row):
+    """{parameter: text} of a table's row {column: text}: no description, no `!column`, no cell that is LEFT_OUT."""
+    return {name: value for name, value in row.items()
+            if not name.startswith("!") and name != "description" and value != LEFT_OUT}
 
 
 def _table_row():
-    """{column: text} of the row's parameters, without cells that are LEFT_OUT; nothing outside a batch."""
+    """{parameter: text} of the row that yade-batch gives; nothing outside a batch."""
     line, rows = _batch_table() or (0, {0: {}})
-    return {name: value for name, value in rows[line].items()
-            if not name.startswith("!") and name != "description" and value != LEFT_OUT}
+    return of_row(rows[line])
 
 
 def batch_row():
@@ -167,8 +183,13 @@ def batch_row():
     if found is None:
         return None
     line, rows = found
-    names = {number: _folder_name(row.get("description") or f"row {number}") for number, row in rows.items()}
+    names = row_names(rows)
     return names[line] if list(names.values()).count(names[line]) == 1 else f"{names[line]}_line_{line}"
+
+
+def row_names(rows):
+    """{number of the line: name for a folder} of a table's rows."""
+    return {number: _folder_name(row.get("description") or f"row {number}") for number, row in rows.items()}
 
 
 def _folder_name(words):

@@ -1,0 +1,165 @@
+"""Run every row of a yade-batch table, here or on a cluster, and gather the results on one page.
+
+    python3 -m calibration.sweep TABLE SCRIPT [--out DIR] [--jobs N | --scheduler ADDRESS]
+    python3 -m calibration.sweep TABLE SCRIPT [--out DIR] --slurm FILE
+
+A row is a run of SCRIPT in DIR/ROW, named by the table's description, with the values of the row as its parameters; its
+words go to DIR/ROW.log. All rows are checked before the first one runs. The same command again keeps the rows that have
+finished and resumes the others from their checkpoints. Writes sweep.html and sweep.csv into DIR. Exit code 0: all rows
+are done; 1: some failed, each said in one line; 2: bad input, said in one line; 128 + n: stopped by signal n.
+
+On a cluster, start `dask scheduler` on one machine and `dask worker ADDRESS --nthreads N` on each, N rows at a time;
+all see the same folders. A worker lost in mid-row costs one checkpoint interval, and the row goes on elsewhere; the
+scheduler gives a row up with its fourth worker (DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES, 3).
+"""
+import argparse
+import json
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+from calibration.campaigns import runs, yade_job
+from calibration.generated import ROOT
+from calibration.sweep import page, slurm
+from calibration.sweep.progress import Progress
+from rockwear.kernels.checks import ParameterError, require
+from rockwear.report.folder import RunFolder
+
+
+@dataclass
+class Row:
+    """A row of the table. given: {parameter: text} of its cells; values: {parameter: value} of all parameters;
+    failure: why it failed, nothing before."""
+
+    name: str
+    given: dict
+    values: dict
+    threads: int
+    folder: Path
+    job: dict
+    failure: str = ""
+
+    @property
+    def done(self):
+        """Whether the row has finished with these values."""
+        return runs.finished(self.folder, self.values)
+
+    def run_folder(self):
+        """RunFolder of a finished row, else None."""
+        return RunFolder(self.folder) if self.done else None
+
+
+def read_rows(table, script, out):
+    """([Row], {parameter: unit}, folder of the sweep). Raises ParameterError before anything has run."""
+    require(Path(table).is_file(), "table", table, "a file")
+    require(Path(script).is_file(), "script", script, "a file")
+    with tempfile.TemporaryDirectory() as scratch:
+        file = Path(scratch) / "rows.json"
+        done = subprocess.run(["yade", "-n", "-x", "-j1", str(ROOT / "calibration/sweep/rows.py"), str(table),
+                               str(script), str(file)], env={**os.environ, "PYTHONPATH": str(ROOT)},
+                              capture_output=True, encoding="utf-8", stdin=subprocess.DEVNULL)
+        if not file.exists():
+            raise ParameterError("script", script, "one that YADE can read: " + (
+                done.stderr.strip().splitlines() or ["nothing said"])[-1])
+        found = json.loads(file.read_text(encoding="utf-8"))
+    if "error" in found:
+        raise SweepError(found["error"])
+    folder = Path(out or _common_out(found["rows"]) or Path("out") / Path(table).stem)
+    script = Path(script).resolve()
+    rows = []
+    for row in found["rows"]:
+        words = [word for name, value in row["given"].items() for word in (f"--{name}", value)]
+        place = folder / row["name"]
+        rows.append(Row(row["name"], row["given"], row["values"], row["threads"], place,
+                        runs.job(script, place, words, row["threads"], row["environment"])))
+    return rows, found["units"], folder
+
+
+class SweepError(Exception):
+    """Bad input; str() is the line that says it."""
+
+
+def _common_out(rows):
+    """The column `out` of a table, where all rows have the same."""
+    found = {row["out"] for row in rows}
+    return found.pop() if len(found) == 1 else ""
+
+
+def run_all(rows, folder, **where):
+    """Run the rows that are not done; a row that fails has its `failure` set."""
+    missing = [row for row in rows if not row.done]
+    progress = Progress(rows)
+    if not missing:
+        return
+    with runs.Runs(folder, keep=True, **where) as started:
+        waiting = {row.name: started.submit(row.job) for row in missing}
+        left = {row.name: row for row in missing}
+        while left:
+            for name in [name for name in left if waiting[name].future.done()]:
+                row = left.pop(name)
+                row.failure = str(waiting[name].exception() or "")
+                if row.failure:
+                    progress.say(f"failed: {row.failure}", sys.stderr)
+            progress.show(left)
+            if left:
+                started.wait_for_next([waiting[name] for name in left], progress.period)
+    progress.close()
+
+
+def run_one(row):
+    """Run one row here, without a scheduler. -> exit code as of a sweep."""
+    if row.done:
+        return 0
+    (row.folder / "summary.json").unlink(missing_ok=True)
+    code, said = yade_job.run(row.job)
+    if code:
+        print(f"failed: {row.name} ended with {code}: {said}", file=sys.stderr)
+    return 1 if code else 0
+
+
+def main(words):
+    """-> exit code."""
+    parser = argparse.ArgumentParser(prog="python3 -m calibration.sweep", description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("table", metavar="TABLE", help="a table of yade-batch")
+    parser.add_argument("script", metavar="SCRIPT", help="a YADE script of a scene, yade_scripts/steady_cut.py for one")
+    parser.add_argument("--out", metavar="DIR", help="folder of the results (default: the table's column out, else "
+                        "out/ and the table's name)")
+    runs.add_placement(parser)
+    parser.add_argument("--results", nargs="+", default=(), metavar="NAME", help="results to show, of those in the "
+                        "rows' summary.json")
+    parser.add_argument("--slurm", metavar="FILE", help="write a job array for sbatch, a row a job, and run nothing")
+    parser.add_argument("--row", type=int, metavar="N", help="run the Nth row alone, here; this is what a job of the "
+                        "array does")
+    options = parser.parse_args(words)
+    try:
+        rows, units, folder = read_rows(options.table, options.script, options.out)
+        if options.slurm:
+            return slurm.write(Path(options.slurm), rows, options.table, options.script, folder)
+        if options.row is not None:
+            require(1 <= options.row <= len(rows), "row", options.row, f"from 1 to {len(rows)}")
+            return run_one(rows[options.row - 1])
+        where, _ = runs.placement(words)
+        folder.mkdir(parents=True, exist_ok=True)
+        run_all(rows, folder, **where)
+    except (ParameterError, SweepError, OSError) as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 2
+    failed = [row for row in rows if row.failure]
+    print(f"{len(rows) - len(failed)} of {len(rows)} rows are done, {len(failed)} failed: "
+          f"{page.write(folder, rows, units, options.results)}")
+    return 1 if failed else 0
+
+
+def _stop(number, frame):
+    raise SystemExit(128 + number)
+
+
+if __name__ == "__main__":
+    signal.signal(signal.SIGTERM, _stop)
+    signal.signal(signal.SIGINT, _stop)
+    sys.exit(main(sys.argv[1:]))
