@@ -4,12 +4,13 @@ OUT     := out
 SUDO    := $(if $(filter 0,$(shell id -u)),,sudo)
 
 TO_RUN  := yade python3-numpy python3-scipy python3-matplotlib python3-pil python3-stl
-TO_TEST := python3-pytest python3-pytest-xdist
+TO_TEST := python3-pytest python3-pytest-xdist $(TO_SWEEP)
+TO_SWEEP := python3-distributed
 TO_LINT := python3-flake8
 
 .DEFAULT_GOAL := help
-.PHONY: help setup setup-test run test test-kernels validate bench campaigns campaign-wear campaign-uniaxial \
-        campaign-grains campaign-rocks campaign-steady lint clean
+.PHONY: help setup setup-sweep setup-test run test test-kernels validate bench campaigns campaign-wear \
+        campaign-uniaxial campaign-grains campaign-rocks campaign-steady lint clean
 
 # $(call install,packages,modules): the missing packages, where there is apt-get; then each module must be found.
 define install
@@ -36,8 +37,11 @@ setup: ## install what a run needs (Debian packages) and check that YADE starts
 	@yade --version >/dev/null 2>&1 || \
 	  { echo "setup: YADE is missing or does not start (try: yade --version)" >&2; exit 1; }
 
+setup-sweep: setup ## what many runs at once need too: fits, campaigns and sweeps, here or on a cluster
+	$(call install,$(TO_SWEEP),distributed)
+
 setup-test: setup
-	$(call install,$(TO_TEST),pytest xdist)
+	$(call install,$(TO_TEST),pytest xdist distributed)
 
 # Wear is accelerated so that the tip wears away within a cut of 60 mm instead of kilometres.
 run: setup ## cut a sandstone steadily, the tip wearing; report in out/steady_cut/report.html
@@ -50,31 +54,33 @@ test: setup-test ## all tests
 test-kernels: setup-test ## the tests of the physics without YADE
 	$(PYTHON) -m pytest -n 2 tests/kernels
 
-validate: setup ## compare with exact solutions and the sources' numbers; page in out/validate
+validate: setup-sweep ## compare with exact solutions and the sources' numbers; page in out/validate
 	$(PYTHON) -m calibration.validation $(OUT)/validate
 
-bench: setup ## speed against error; figures and numbers in out/bench
+bench: setup-sweep ## speed against error; figures and numbers in out/bench
 	$(PYTHON) -m calibration.benchmarks $(OUT)/bench
 
-campaigns: setup ## the test tooth in four packings, two runs at a time
-	mkdir -p $(OUT)/campaign
-	yade-batch -j2 --job-threads=1 --log=$(OUT)/campaign/@.log \
-	  yade_scripts/tooth_cycles.seeds.table yade_scripts/tooth_cycles.py
+# Each of these runs on a cluster, too: make campaign-steady SCHEDULER=tcp://HOST:PORT
+WHERE := $(if $(SCHEDULER),--scheduler $(SCHEDULER))
 
-campaign-wear: setup ## test tooth and ripper worn over many cycles, sharp and worn compared (four hours; resumes)
-	$(PYTHON) -m calibration.campaigns.wear $(OUT)/campaign-wear
+campaigns: setup-sweep ## the test tooth in four packings, two runs at a time; page in out/campaign/sweep.html
+	$(PYTHON) -m calibration.sweep yade_scripts/tooth_cycles.seeds.table yade_scripts/tooth_cycles.py \
+	  --out $(OUT)/campaign $(WHERE)
 
-campaign-uniaxial: setup ## the laboratory: bond laws, softening slopes, micro-parameters (hours; resumes)
-	$(PYTHON) -m calibration.campaigns.uniaxial $(OUT)/campaign-uniaxial
+campaign-wear: setup-sweep ## test tooth and ripper worn over many cycles, sharp and worn compared (four hours; resumes)
+	$(PYTHON) -m calibration.campaigns.wear $(OUT)/campaign-wear $(WHERE)
 
-campaign-grains: setup ## the Hawkesbury sandstone of grains, and what its strength depends on (hours; resumes)
-	$(PYTHON) -m calibration.campaigns.grains $(OUT)/campaign-grains
+campaign-uniaxial: setup-sweep ## the laboratory: bond laws, softening slopes, micro-parameters (hours; resumes)
+	$(PYTHON) -m calibration.campaigns.uniaxial $(OUT)/campaign-uniaxial $(WHERE)
 
-campaign-rocks: setup ## what bond laws and rock properties do to a rock, at three resolutions (hours; resumes)
-	$(PYTHON) -m calibration.campaigns.rock_laws $(OUT)/campaign-rocks
+campaign-grains: setup-sweep ## the Hawkesbury sandstone of grains, and what its strength depends on (hours; resumes)
+	$(PYTHON) -m calibration.campaigns.grains $(OUT)/campaign-grains $(WHERE)
 
-campaign-steady: setup ## what makes a steady cut what it is, one cause at a time (hours; resumes)
-	$(PYTHON) -m calibration.campaigns.steady_cut $(OUT)/campaign-steady
+campaign-rocks: setup-sweep ## what bond laws and rock properties do to a rock, at three resolutions (hours; resumes)
+	$(PYTHON) -m calibration.campaigns.rock_laws $(OUT)/campaign-rocks $(WHERE)
+
+campaign-steady: setup-sweep ## what makes a steady cut what it is, one cause at a time (hours; resumes)
+	$(PYTHON) -m calibration.campaigns.steady_cut $(OUT)/campaign-steady $(WHERE)
 
 lint: ## check the code with flake8
 	$(call install,$(TO_LINT),flake8)

@@ -1,10 +1,12 @@
 """Campaign of grains: the Hawkesbury sandstone of [Bahaaddini 2018], and the parameter study around it.
 
-    python3 -m calibration.campaigns.grains DIR [calibrated|study ...] [--read] [--jobs N]
+    python3 -m calibration.campaigns.grains DIR [calibrated|study ...] [--read]
+        [--jobs N | --scheduler ADDRESS]
 
-N runs at a time (2), a folder a run; finished runs are not repeated, so that an interrupted campaign resumes. --read
-starts no run and evaluates those that exist. Writes into DIR grains.csv (strengths and moduli of every run), grains.md
-(tables), hawkesbury.json (the rock file with what was measured), the figures and provenance.json.
+N runs at a time (2), or as many as a dask scheduler's workers take; a folder a run; finished runs are not repeated, so
+that an interrupted campaign resumes. --read starts no run and evaluates those that exist. Writes into DIR grains.csv
+(strengths and moduli of every run), grains.md (tables), hawkesbury.json (the rock file with what was measured), the
+figures and provenance.json.
 """
 import json
 import sys
@@ -15,7 +17,7 @@ import matplotlib
 from calibration import generated
 from calibration.campaigns import grains_figures as figures
 from calibration.campaigns import grains_tables as tables
-from calibration.campaigns.runs import Runs, wait_for
+from calibration.campaigns.runs import PLACEMENT, Runs, placement, wait_for
 from calibration.campaigns.uniaxial_tables import write_csv
 from rockwear.model import rock_file
 from rockwear.report import plots
@@ -143,12 +145,11 @@ def _line(key, run):
     return f"{name or 'calibrated'} {x:.4g}, {test}, packing {seed}: {1e-6 * run.result('peak_stress'):.2f} MPa"
 
 
-def main(folder, words):
-    """-> exit code: 1 where a run failed."""
+def main(folder, words, **where):
+    """where: options of Runs. -> exit code: 1 where a run failed."""
     failed = 0
-    at_once = int(words[words.index("--jobs") + 1]) if "--jobs" in words else 2
     if "--read" not in words:
-        with Runs(folder, at_once=at_once, keep=True) as runs:
+        with Runs(folder, keep=True, **where) as runs:
             jobs = {key: runs.start(place, script, **values)
                     for campaign in [word for word in CAMPAIGNS if word in words] or CAMPAIGNS
                     for key, (place, script, values) in planned(campaign).items()}
@@ -158,6 +159,7 @@ def main(folder, words):
 
 
 if __name__ == "__main__":
-    if len(sys.argv) < 2:
-        sys.exit("usage: python3 -m calibration.campaigns.grains DIR [calibrated] [study] [--read] [--jobs N]")
-    sys.exit(main(Path(sys.argv[1]), sys.argv[2:]))
+    where, words = placement(sys.argv[1:])
+    if not words:
+        sys.exit(f"usage: python3 -m calibration.campaigns.grains DIR [calibrated] [study] [--read] {PLACEMENT}")
+    sys.exit(main(Path(words[0]), words[1:], **where))

@@ -1,10 +1,11 @@
 """What bond laws and rock properties do to a rock, and whether a rock stays the same as its discs become finer.
 
     python3 -m calibration.campaigns.rock_laws DIR [laws|resolution|softening|relations ...] [--read]
+        [--jobs N | --scheduler ADDRESS]
 
-Two runs at a time, a folder a run; finished runs are not repeated, so that an interrupted campaign resumes. --read
-starts no run and evaluates those that exist. Writes into DIR rock_laws.md (tables), rock_laws.csv, resolution.png,
-relations.json, relations.png and provenance.json.
+N runs at a time (2), or as many as a dask scheduler's workers take; a folder a run; finished runs are not repeated, so
+that an interrupted campaign resumes. --read starts no run and evaluates those that exist. Writes into DIR rock_laws.md
+(tables), rock_laws.csv, resolution.png, relations.json, relations.png and provenance.json.
 """
 import csv
 import json
@@ -16,7 +17,7 @@ import matplotlib
 import numpy as np
 
 from calibration import generated
-from calibration.campaigns.runs import Runs, wait_for
+from calibration.campaigns.runs import PLACEMENT, Runs, placement, wait_for
 from rockwear.report import palette, plots
 from rockwear.report.folder import RunFolder
 
@@ -248,11 +249,11 @@ def write(folder):
     return generated.write_page(folder / "rock_laws.md", lines)
 
 
-def main(folder, words):
-    """-> exit code: 1 where a run failed."""
+def main(folder, words, **where):
+    """where: options of Runs. -> exit code: 1 where a run failed."""
     failed = 0
     if "--read" not in words:
-        with Runs(folder, keep=True) as runs:
+        with Runs(folder, keep=True, **where) as runs:
             jobs = {(campaign, *key): job for campaign in words or list(CASES)
                     for key, job in start(runs, campaign).items()}
             failed = wait_for(jobs, lambda key, run: "{}: {}, {}, packing {}".format(*key))
@@ -261,7 +262,8 @@ def main(folder, words):
 
 
 if __name__ == "__main__":
-    unknown = [word for word in sys.argv[2:] if word not in (*CASES, "--read")]
-    if len(sys.argv) < 2 or unknown:
-        sys.exit(f"usage: python3 -m calibration.campaigns.rock_laws DIR [{'] ['.join(CASES)}] [--read]")
-    sys.exit(main(Path(sys.argv[1]), sys.argv[2:]))
+    where, words = placement(sys.argv[1:])
+    unknown = [word for word in words[1:] if word not in (*CASES, "--read")]
+    if not words or unknown:
+        sys.exit(f"usage: python3 -m calibration.campaigns.rock_laws DIR [{'] ['.join(CASES)}] [--read] {PLACEMENT}")
+    sys.exit(main(Path(words[0]), words[1:], **where))

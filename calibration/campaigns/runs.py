@@ -1,12 +1,15 @@
-"""Scenes run in processes of their own, each into its folder, where a dask scheduler puts them: here or on a cluster."""
+"""Scenes run in processes of their own, each into its folder, where a dask scheduler puts them: here or elsewhere."""
 import argparse
 import asyncio
+import concurrent.futures
 import importlib.util
 import logging
 import os
+import signal
 import subprocess
 import sys
 import tempfile
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from calibration.campaigns import yade_job
@@ -16,8 +19,12 @@ from rockwear.model import rock_file
 from rockwear.report.folder import RunFolder
 from rockwear.run.checkpoint import digest
 
+PLACEMENT = "[--jobs N | --scheduler ADDRESS]"
+"""Options of `placement`."""
 PATIENCE = 5
 """s in which a scheduler must answer."""
+GONE = OSError, asyncio.CancelledError, concurrent.futures.CancelledError
+"""What dask raises where the scheduler has gone."""
 LOST = 10
 """Workers that a run may lose here before it counts as the cause."""
 
@@ -67,8 +74,8 @@ class Started:
             code, said = self.future.result()
         except KilledWorker:
             return RunFailed(f"{self.folder.name} was given up: too many of its workers were lost")
-        except asyncio.CancelledError:
-            return RunFailed(f"{self.folder.name} was given up: the scheduler was lost")
+        except GONE:
+            return RunFailed(f"{self.folder.name} was left: the scheduler was lost")
         return RunFailed(f"{self.folder.name} ended with {code}: {said}", code) if code else None
 
     def result(self):
@@ -98,12 +105,13 @@ class Runs:
     def __exit__(self, kind, error, trace):
         if self.client is None:
             return
-        import distributed
-        if kind is None:
-            distributed.wait(self.futures)
-        else:
-            self.client.cancel(self.futures)
-        self.client.close()
+        with suppress(*GONE):
+            if kind is None:
+                for future in self.futures:
+                    future.exception()
+            else:
+                self.client.cancel(self.futures)
+            self.client.close()
         if self.cluster:
             self.cluster.close()
             self.scratch.cleanup()
@@ -132,7 +140,8 @@ class Runs:
         import distributed
         try:
             distributed.wait([one.future for one in started], timeout=timeout, return_when="FIRST_COMPLETED")
-        except (TimeoutError, asyncio.CancelledError):
+        except GONE:
+            # TimeoutError is an OSError; one whose scheduler was lost says so itself.
             pass
 
     def _connect(self):
@@ -143,13 +152,23 @@ class Runs:
         import dask
         import distributed
         self.scratch = tempfile.TemporaryDirectory()
-        # A run is dear, and no guess at its duration may send it to a queue while another worker is idle.
+        # Runs start in the order in which they were queued, none behind a long one while another worker is idle.
         with dask.config.set({"distributed.scheduler.allowed-failures": LOST,
-                              "distributed.scheduler.unknown-task-duration": "1h"}):
+                              "distributed.scheduler.worker-saturation": 1.0}), _uninterrupted():
             self.cluster = distributed.LocalCluster(
                 n_workers=self.at_once, threads_per_worker=1, dashboard_address=None, memory_limit=0,
                 silence_logs=logging.CRITICAL, local_directory=self.scratch.name)
         self.client = distributed.Client(self.cluster)
+
+
+@contextmanager
+def _uninterrupted():
+    """Processes that begin in this context do not hear Ctrl-C; this one ends them, its runs with a checkpoint."""
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 def require_dask():
@@ -161,7 +180,8 @@ def connected(address):
     """A client of the dask scheduler at `address`. Raises ParameterError where none answers."""
     require_dask()
     import distributed
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)
+    for name in ("distributed", "distributed.client"):
+        logging.getLogger(name).setLevel(logging.CRITICAL)
     try:
         return distributed.Client(address, timeout=PATIENCE)
     except (OSError, ValueError) as error:
@@ -178,7 +198,8 @@ def placement(words):
     add_placement(parser)
     found, others = parser.parse_known_args(words)
     try:
-        require_dask()
+        if "--read" not in others:
+            require_dask()
         if hasattr(found, "scheduler"):
             connected(found.scheduler).close()
     except ParameterError as error:

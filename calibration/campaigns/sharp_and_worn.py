@@ -1,6 +1,6 @@
 """Sharp and worn: the effect of a tooth's wear on the cut.
 
-    python3 -m calibration.campaigns.sharp_and_worn WORN_RUN DIR [SEED ...]
+    python3 -m calibration.campaigns.sharp_and_worn WORN_RUN DIR [SEED ...] [--jobs N | --scheduler ADDRESS]
 
 WORN_RUN is the folder of a finished run of a wearing tooth (make campaign-wear writes some). Its outlines, new and at
 equal steps of its mass loss, become teeth without wear; each cuts the same fresh specimens at the same depth, one
@@ -16,7 +16,7 @@ import matplotlib
 import numpy as np
 
 from calibration import generated
-from calibration.campaigns.runs import RunFailed, Runs
+from calibration.campaigns.runs import RunFailed, Runs, placement
 from calibration.campaigns.two_tools import scatter
 from calibration.campaigns.uniaxial_tables import write_csv
 from rockwear.kernels import cutting_theory
@@ -133,8 +133,8 @@ def figure(teeth, rows):
     return drawn
 
 
-def main(worn_run, folder, seeds=SEEDS):
-    """Run the missing cuts, and write tables, figure and page."""
+def main(worn_run, folder, seeds=SEEDS, **where):
+    """Run the missing cuts, and write tables, figure and page. where: options of Runs."""
     folder, run = Path(folder), RunFolder(worn_run)
     require({"tool_volumes", "rock_radii"} <= set(run.model) and len(run.times), "WORN_RUN", str(worn_run),
             "the folder of a cut in the plane with a tool of particles")
@@ -148,7 +148,7 @@ def main(worn_run, folder, seeds=SEEDS):
         np.savetxt(path, polygon, delimiter=",", header="x [m],y [m]", comments="")
         rake = effective_rake(polygon, run.parameter("depth_of_cut", math.nan))
         teeth.append({"lost": lost, "outline": polygon, "path": path, "rake": rake, **theory(rake, run)})
-    with Runs(folder, keep=True) as runs:
+    with Runs(folder, keep=True, **where) as runs:
         cuts = {(number, seed): runs.start(f"tooth_{number}-{seed}", "yade_scripts/tooth_cycles.py", seed=seed,
                                            outline=tooth["path"], **common, **CUT)
                 for seed in seeds for number, tooth in enumerate(teeth)}
@@ -188,10 +188,11 @@ def write_page(folder, teeth, rows):
 
 if __name__ == "__main__":
     matplotlib.use("Agg")
-    if len(sys.argv) < 3:
+    where, words = placement(sys.argv[1:])
+    if len(words) < 2:
         sys.exit(__doc__)
     try:
-        main(sys.argv[1], sys.argv[2], tuple(map(int, sys.argv[3:])) or SEEDS)
+        main(words[0], words[1], tuple(map(int, words[2:])) or SEEDS, **where)
     except (OSError, ParameterError, RunFailed) as error:
         print(f"error: {error}", file=sys.stderr)
         sys.exit(1 if isinstance(error, RunFailed) else 2)

@@ -1,11 +1,11 @@
 """What makes a steady cut what it is: causes one at a time, from a rock whose cut looks like rock.
 
-    python3 -m calibration.campaigns.steady_cut DIR [CASE ...] [--read]
+    python3 -m calibration.campaigns.steady_cut DIR [CASE ...] [--read] [--jobs N | --scheduler ADDRESS]
 
-Two runs at a time, a folder a run; finished runs are not repeated, so that an interrupted campaign resumes. --read
-starts no run and evaluates those that exist. Each rock is also crushed in the laboratory, and the base pulled, in the
-same packings. Writes into DIR steady_cut.md (tables), steady_cut.csv, steady_cut.png, steady_cut_forces.png and
-provenance.json.
+N runs at a time (2), or as many as a dask scheduler's workers take; a folder a run; finished runs are not repeated, so
+that an interrupted campaign resumes. --read starts no run and evaluates those that exist. Each rock is also crushed in
+the laboratory, and the base pulled, in the same packings. Writes into DIR steady_cut.md (tables), steady_cut.csv,
+steady_cut.png, steady_cut_forces.png and provenance.json.
 """
 import csv
 import math
@@ -16,7 +16,7 @@ import matplotlib
 import numpy as np
 
 from calibration import generated
-from calibration.campaigns.runs import Runs, wait_for
+from calibration.campaigns.runs import PLACEMENT, Runs, placement, wait_for
 from rockwear.kernels import steady_record
 from rockwear.kernels.cutting_envelope import expected
 from rockwear.kernels.fragments import chip_length
@@ -254,11 +254,11 @@ def write(folder):
     return generated.write_page(folder / "steady_cut.md", lines)
 
 
-def main(folder, words):
-    """-> exit code: 1 where a run failed."""
+def main(folder, words, **where):
+    """where: options of Runs. -> exit code: 1 where a run failed."""
     failed = 0
     if "--read" not in words:
-        with Runs(folder, keep=True) as runs:
+        with Runs(folder, keep=True, **where) as runs:
             jobs = {name: runs.start(name, script, **values)
                     for name, (script, values) in plan(words or CASES).items()}
             failed = wait_for(jobs, lambda name, run: name)
@@ -267,7 +267,8 @@ def main(folder, words):
 
 
 if __name__ == "__main__":
-    unknown = [word for word in sys.argv[2:] if word not in (*CASES, "--read")]
-    if len(sys.argv) < 2 or unknown:
-        sys.exit(f"usage: python3 -m calibration.campaigns.steady_cut DIR [{'] ['.join(CASES)}] [--read]")
-    sys.exit(main(Path(sys.argv[1]), sys.argv[2:]))
+    where, words = placement(sys.argv[1:])
+    unknown = [word for word in words[1:] if word not in (*CASES, "--read")]
+    if not words or unknown:
+        sys.exit(f"usage: python3 -m calibration.campaigns.steady_cut DIR [{'] ['.join(CASES)}] [--read] {PLACEMENT}")
+    sys.exit(main(Path(words[0]), words[1:], **where))

@@ -1,6 +1,6 @@
 """Sensitivity of the tip's temperature: parameters that the publications leave open, one at a time, in one figure.
 
-    python3 -m calibration.campaigns.tip_temperature DIR [--quick]
+    python3 -m calibration.campaigns.tip_temperature DIR [--quick] [--jobs N | --scheduler ADDRESS]
 
 Particle size at the tool's surface; conductance between particles, from tool to rock, and to air or water; sharing of
 friction heat; loading speed. Each goes from its low to its high choice, beside the scatter over packings. --quick takes
@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from calibration import generated
-from calibration.campaigns.runs import Runs
+from calibration.campaigns.runs import Runs, placement
 from rockwear.report import plots
 
 RIPPER = dict(velocities=0.4, wear_passes=0, report="false", snapshot_period=1, grading_factor=3)
@@ -52,11 +52,11 @@ OPEN = {
 """{parameter: {choice: values}}; a choice without values is the scene's default, which runs once."""
 
 
-def measure(folder, scene, quick=False, at_once=2):
-    """{parameter: {choice: {temperature: rise in K}}} of a scene; finished runs are kept."""
+def measure(folder, scene, quick=False, **where):
+    """{parameter: {choice: {temperature: rise in K}}} of a scene; finished runs are kept. where: options of Runs."""
     script, values, temperatures = SCENES[scene]
     values = {**values, **(QUICK if quick else {})}
-    with Runs(folder, at_once=at_once, keep=True) as runs:
+    with Runs(folder, keep=True, **where) as runs:
         default = runs.start("default", script, **values)
         jobs = {(what, choice): runs.start(f"{what}-{choice}".translate(str.maketrans(" /,²()", "______")), script,
                                            **{**values, **change}) if change else default
@@ -112,13 +112,13 @@ def table(scene, measured):
          for choice, rises in choices.items()])]
 
 
-def main(folder, quick):
+def main(folder, quick, **where):
     """Measure every scene; write a figure and the numbers of each."""
     folder.mkdir(parents=True, exist_ok=True)
     lines = []
     for scene in SCENES:
         place = folder / scene.replace(" ", "_").replace("/", "_")
-        measured = measure(place, scene, quick)
+        measured = measure(place, scene, quick, **where)
         files = folder / f"{place.name}.json", folder / f"{place.name}.png"
         files[0].write_text(json.dumps(measured, indent=1), encoding="utf-8")
         draw(scene, measured).savefig(files[1], dpi=110)
@@ -128,4 +128,5 @@ def main(folder, quick):
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]), "--quick" in sys.argv)
+    where, words = placement(sys.argv[1:])
+    main(Path(words[0]), "--quick" in words, **where)

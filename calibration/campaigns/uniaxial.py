@@ -1,10 +1,10 @@
 """Campaigns of the virtual laboratory: three bond laws, and the parameters that a sandstone's strength depends on.
 
-    python3 -m calibration.campaigns.uniaxial DIR [CAMPAIGN ...] [--read]
+    python3 -m calibration.campaigns.uniaxial DIR [CAMPAIGN ...] [--read] [--jobs N | --scheduler ADDRESS]
 
-Two runs at a time, a folder a run; finished runs are not repeated, so that an interrupted campaign resumes. --read
-starts no run and evaluates those that exist. Writes into DIR uniaxial.csv (strengths and moduli by case and packing),
-stress_strain.csv, uniaxial.md (tables), the figures and provenance.json.
+N runs at a time (2), or as many as a dask scheduler's workers take; a folder a run; finished runs are not repeated, so
+that an interrupted campaign resumes. --read starts no run and evaluates those that exist. Writes into DIR uniaxial.csv
+(strengths and moduli by case and packing), stress_strain.csv, uniaxial.md (tables), the figures and provenance.json.
 """
 import math
 import sys
@@ -16,7 +16,7 @@ import matplotlib
 from calibration import generated
 from calibration.campaigns import uniaxial_figures as figures
 from calibration.campaigns import uniaxial_tables as tables
-from calibration.campaigns.runs import Runs, wait_for
+from calibration.campaigns.runs import PLACEMENT, Runs, placement, wait_for
 from calibration.campaigns.uniaxial_tables import TESTS
 from rockwear.report import plots
 from rockwear.report.folder import RunFolder
@@ -215,12 +215,12 @@ def write_curves(path, runs):
             "platen_strain", "axial_strain", "lateral_strain", "stress")))])
 
 
-def main(folder, words):
-    """-> exit code: 1 where a run failed."""
+def main(folder, words, **where):
+    """where: options of Runs. -> exit code: 1 where a run failed."""
     failed = 0
     campaigns = [word for word in words if word != "--read"] or list(CAMPAIGNS)
     if "--read" not in words:
-        with Runs(folder, keep=True) as runs:
+        with Runs(folder, keep=True, **where) as runs:
             jobs = {(campaign, *key): job for campaign in campaigns for key, job in start(runs, campaign).items()}
             failed = wait_for(jobs, lambda key, run: "{}: {}, {}, packing {}: {:.1f} MPa".format(
                 *key, 1e-6 * run.result("peak_stress")))
@@ -229,7 +229,8 @@ def main(folder, words):
 
 
 if __name__ == "__main__":
-    unknown = [word for word in sys.argv[2:] if word not in (*CAMPAIGNS, "--read")]
-    if len(sys.argv) < 2 or unknown:
-        sys.exit(f"usage: python3 -m calibration.campaigns.uniaxial DIR [{'] ['.join(CAMPAIGNS)}] [--read]")
-    sys.exit(main(Path(sys.argv[1]), sys.argv[2:]))
+    where, words = placement(sys.argv[1:])
+    unknown = [word for word in words[1:] if word not in (*CAMPAIGNS, "--read")]
+    if not words or unknown:
+        sys.exit(f"usage: python3 -m calibration.campaigns.uniaxial DIR [{'] ['.join(CAMPAIGNS)}] [--read] {PLACEMENT}")
+    sys.exit(main(Path(words[0]), words[1:], **where))

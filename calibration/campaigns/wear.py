@@ -1,10 +1,11 @@
 """Wear of whole tools over many cycles: test tooth and ripper of [Rojek 2003, 9.2 and 9.3] in full, one page.
 
-    python3 -m calibration.campaigns.wear DIR [CASE ...]            (make campaign-wear)
+    python3 -m calibration.campaigns.wear DIR [CASE ...] [--jobs N | --scheduler ADDRESS]         (make campaign-wear)
 
-All cases, or those named; two runs at a time, a folder a run. An interrupted campaign resumes: finished runs are kept,
-the others continue from their checkpoints. The last part cuts fresh rock with the worn outlines of the ripper
-(calibration.campaigns.sharp_and_worn). Writes report.html, wear.md (tables), figures and provenance.json into DIR.
+All cases, or those named; two runs at a time, or N, or as many as a dask scheduler's workers take; a folder a run. An
+interrupted campaign resumes: finished runs are kept, the others continue from their checkpoints. The last part cuts
+fresh rock with the worn outlines of the ripper (calibration.campaigns.sharp_and_worn). Writes report.html, wear.md
+(tables), figures and provenance.json into DIR.
 """
 import sys
 from pathlib import Path
@@ -14,7 +15,7 @@ import numpy as np
 
 from calibration import generated
 from calibration.campaigns import sharp_and_worn
-from calibration.campaigns.runs import RunFailed, Runs
+from calibration.campaigns.runs import RunFailed, Runs, placement
 from rockwear.kernels.wear_statistics import difference, middles
 from rockwear.report import page, plots
 from rockwear.report.folder import read_history
@@ -148,13 +149,16 @@ def comparison_sections(folder, found):
     return sections, rows
 
 
-def main(folder, *names):
-    """Run the missing ones of the named cases (default: all) and write the page. -> exit code; 1: a run failed."""
+def main(folder, *names, **where):
+    """Run the missing ones of the named cases (default: all) and write the page; where: options of Runs.
+
+    -> exit code; 1: a run failed.
+    """
     unknown = set(names) - set(CASES)
     if unknown:
         sys.exit(f"wear campaign: no such case: {', '.join(sorted(unknown))}; there are: {'; '.join(CASES)}")
     folder, cases = Path(folder), {name: CASES[name] for name in names or CASES}
-    with Runs(folder, keep=True) as runs:
+    with Runs(folder, keep=True, **where) as runs:
         waiting = {name: runs.start(name.replace(", ", "-").replace(" ", "_"), script, **{**COARSE, **values})
                    for name, (script, values) in cases.items()}
         failed = {name: str(future.exception()) for name, future in waiting.items() if future.exception()}
@@ -177,7 +181,7 @@ def main(folder, *names):
                   if (run.path / "figures" / f"{figure}.png").exists()]
         sections.append(page.Section(name, "", pieces))
     if WORN in found:
-        sharp_and_worn.main(found[WORN].path, folder / "sharp_and_worn")
+        sharp_and_worn.main(found[WORN].path, folder / "sharp_and_worn", **where)
         sections.append(page.Section("Sharp and worn", f"The same rock cut by the new and the worn outlines of {WORN}; "
                                      "see sharp_and_worn/report.html.",
                                      [page.image(folder / "sharp_and_worn/sharp_and_worn.png")]))
@@ -191,9 +195,10 @@ def main(folder, *names):
 
 if __name__ == "__main__":
     matplotlib.use("Agg")
-    if len(sys.argv) < 2:
+    where, words = placement(sys.argv[1:])
+    if not words:
         sys.exit(__doc__)
     try:
-        sys.exit(main(*sys.argv[1:]))
+        sys.exit(main(*words, **where))
     except RunFailed as error:
         sys.exit(f"wear campaign: {error}")

@@ -69,6 +69,10 @@ def read_rows(table, script, out):
     if "error" in found:
         raise SweepError(found["error"])
     folder = Path(out or _common_out(found["rows"]) or Path("out") / Path(table).stem)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise ParameterError("out", str(folder), f"a folder that can be written ({error.strerror})") from None
     script = Path(script).resolve()
     rows = []
     for row in found["rows"]:
@@ -136,15 +140,15 @@ def main(words):
     parser.add_argument("--row", type=int, metavar="N", help="run the Nth row alone, here; this is what a job of the "
                         "array does")
     options = parser.parse_args(words)
+    alone = options.slurm or options.row is not None
     try:
+        where = {} if alone else runs.placement(words)[0]
         rows, units, folder = read_rows(options.table, options.script, options.out)
         if options.slurm:
             return slurm.write(Path(options.slurm), rows, options.table, options.script, folder)
         if options.row is not None:
             require(1 <= options.row <= len(rows), "row", options.row, f"from 1 to {len(rows)}")
             return run_one(rows[options.row - 1])
-        where, _ = runs.placement(words)
-        folder.mkdir(parents=True, exist_ok=True)
         run_all(rows, folder, **where)
     except (ParameterError, SweepError, OSError) as error:
         print(f"error: {error}", file=sys.stderr)
@@ -156,6 +160,7 @@ def main(words):
 
 
 def _stop(number, frame):
+    print(f"\nstopped by signal {number}; the same command resumes", flush=True)
     raise SystemExit(128 + number)
 
 

@@ -93,6 +93,7 @@ def draw(name, rows, found, swept, units, results):
                 axes.plot(sorted(set(x)), middle, "-", color=line.get_color())
         if not numbers:
             axes.set_xticks(range(len(places)), [str(place) for place in places])
+            axes.set_xlim(-0.5, len(places) - 0.5)
         axes.set(xlabel=f"{page.words(name)} / {units[name]}" if units[name] not in ("", "-") else page.words(name),
                  ylabel=f"{page.words(result)} / {unit}" if unit else page.words(result))
     if 1 < len(groups) <= MOST_LINES:

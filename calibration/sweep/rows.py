@@ -46,7 +46,7 @@ def checked(line, row, name, groups):
             require(column not in row, column, row.get(column), "left out: only yade-batch knows it")
         values = parameters.read(groups, [f"--{key}={value}" for key, value in given.items()])
     except ParameterError as error:
-        raise ParameterError("line", line, f"right, but there {error}") from None
+        raise ParameterError(error.name, error.value, f"{error.rule} (line {line})", error.unit) from None
     given = {key: value for key, value in given.items() if key not in ("out", "resume")}
     return {"name": name, "given": given, "threads": int(threads), "environment": others, "out": row.get("out", ""),
             "values": {key: value for key, value in values.items() if key not in run.NOT_IDENTITY}}

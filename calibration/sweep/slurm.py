@@ -36,7 +36,6 @@ exit $code
 
 def write(file, rows, table, script, folder):
     """Write the job array of these rows to `file`. -> exit code."""
-    folder.mkdir(parents=True, exist_ok=True)
     paths = [str(Path(path).resolve()) for path in (table, script)]
     command = shlex.join([sys.executable, "-m", "calibration.sweep", *paths, "--out", str(folder.resolve())])
     threads = max(row.threads for row in rows)

@@ -1,0 +1,187 @@
+"""Sweeps of a table: a worker killed in mid-row, failed and finished rows, bad input, the page, a job array."""
+import csv
+import json
+import os
+import re
+import signal
+import subprocess
+import threading
+import time
+from dataclasses import replace
+from pathlib import Path
+from unittest import mock
+
+import pytest
+
+from calibration.campaigns import runs, yade_job
+from calibration.sweep import __main__ as sweep
+from calibration.sweep import page, slurm
+from tests.running import ROOT
+
+SCRIPT = str(ROOT / "yade_scripts/uniaxial.py")
+ROW = dict(test="tension", width=0.04, height=0.03, radius_min=1e-3, radius_max=1.5e-3, kt=4e9, Rt=1e5, speed=0.03,
+           checkpoint_interval=0.01, report="false")
+"""Some 200 discs pulled apart in a chunk of 2000 steps and a part of one, each followed by a checkpoint."""
+PARENT = re.compile(r"\) \w (\d+) ")
+
+
+def table(path, header, *rows):
+    path.write_text("\n".join(["# a sweep", header, *rows]) + "\n", encoding="utf-8")
+    return str(path)
+
+
+def process_of(folder):
+    """Id of the YADE process that writes `folder`."""
+    for entry in Path("/proc").iterdir():
+        try:
+            if entry.name.isdigit() and str(folder) in (entry / "cmdline").read_text(encoding="utf-8").split("\0"):
+                return int(entry.name)
+        except OSError:
+            continue
+    return None
+
+
+def kill_worker(folder, found):
+    """Kill the worker of the row in `folder` after its first chunk; note the checkpoint then, and how long YADE ran
+    on."""
+    current = folder / "checkpoint/current.json"
+    deadline = time.time() + 60
+    while time.time() < deadline and not (current.exists() and json.loads(
+            current.read_text(encoding="utf-8"))["set"] > 1):
+        time.sleep(0.01)
+    child = process_of(folder)
+    worker = int(PARENT.search(Path(f"/proc/{child}/stat").read_text(encoding="utf-8"))[1])
+    killed = time.time()
+    os.kill(worker, signal.SIGKILL)
+    while process_of(folder) == child and time.time() < deadline:
+        time.sleep(0.01)
+    found["orphan"], found["set"] = time.time() - killed, json.loads(current.read_text(encoding="utf-8"))["set"]
+
+
+@pytest.fixture(scope="module")
+def swept(tmp_path_factory):
+    """(folder, exit code, notes, rows) of a sweep of two equal rows, the worker of the first killed, and one that
+    fails."""
+    folder = tmp_path_factory.mktemp("sweep")
+    words = table(folder / "rows.table", "description seed " + " ".join(ROW) + " !OMP_NUM_THREADS",
+                  "killed 1 " + " ".join(map(str, ROW.values())) + " 1", "never" + " =" * (len(ROW) + 2),
+                  "impossible 2 " + " ".join(map(str, {**ROW, "width": 1e-3}.values())) + " -")
+    out, notes = folder / "out", {}
+    killer = threading.Thread(target=kill_worker, args=(out / "killed", notes))
+    killer.start()
+    with mock.patch.object(sweep, "read_rows", wraps=sweep.read_rows) as reader:
+        rows = []
+        reader.side_effect = lambda *given: rows.append(reader._mock_wraps(*given)) or rows[0]
+        code = sweep.main([words, SCRIPT, "--out", str(out)])
+    killer.join()
+    return out, code, notes, rows[0][0]
+
+
+def test_a_row_whose_worker_is_killed_goes_on_elsewhere_and_differs_in_no_bit(swept):
+    out, code, notes, _ = swept
+    killed, never = (json.loads((out / name / "summary.json").read_text(encoding="utf-8")) for name in (
+        "killed", "never"))
+    assert code == 1 and notes["set"] == 2 and notes["orphan"] < 1
+    assert killed["parameters"]["resume"] and not never["parameters"]["resume"]
+    assert killed["results"] == never["results"] and killed["balances"] == never["balances"]
+    assert (out / "killed/history.csv").read_bytes() == (out / "never/history.csv").read_bytes()
+
+
+def test_failed_rows_are_told_apart_and_gathered_with_the_others(swept):
+    out, _, _, _ = swept
+    page = (out / "sweep.html").read_text(encoding="utf-8")
+    assert "2 of 3 rows done" in page
+    assert "impossible ended with 2: error: radius_max = 0.0015 m" in page
+    rows = list(csv.DictReader((out / "sweep.csv").read_text(encoding="utf-8").splitlines()))
+    assert [row["row"] for row in rows] == ["killed", "never"]
+    assert float(rows[0]["youngs_modulus [Pa]"]) > 1e9 and (out / "width.png").exists() is False
+
+
+def test_finished_rows_are_kept(swept, monkeypatch):
+    out, _, _, rows = swept
+    assert [row.done for row in rows] == [True, True, False]
+    monkeypatch.setattr(runs.Runs, "_connect", None)
+    sweep.run_all(rows[:2], out)
+    assert not replace(rows[0], values={**rows[0].values, "kn": 1.0}).done
+
+
+@pytest.mark.parametrize("header, row, line", [
+    ("description sped", "a 1", "sped = 1: must be a parameter of this scene; did you mean speed (--help lists them) "
+     "(line 3)"),
+    ("description seed", "a 1\na 2", "description = a: must be different from that of line 3")])
+def test_bad_tables_are_refused_before_a_row_runs(tmp_path, capsys, header, row, line):
+    assert sweep.main([table(tmp_path / "bad.table", header, row), SCRIPT, "--out", str(tmp_path / "out")]) == 2
+    said = capsys.readouterr().err
+    assert said.startswith("error: ") and line in said and len(said.splitlines()) == 1
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_missing_table_and_a_silent_scheduler_are_refused(tmp_path, capsys, monkeypatch):
+    assert sweep.main([str(tmp_path / "none.table"), SCRIPT]) == 2
+    monkeypatch.setattr(runs, "PATIENCE", 0.2)
+    with pytest.raises(SystemExit) as ended:
+        runs.placement(["--scheduler", "tcp://127.0.0.1:1"])
+    said = capsys.readouterr().err.splitlines()
+    assert ended.value.code == 2 and len(said) == 2 and said[1].startswith("error: scheduler = tcp://127.0.0.1:1: must")
+
+
+def job(folder, words):
+    """A job that says which words it was given, and does as told."""
+    return {"command": ["sh", "-c", words, "sh"], "folder": str(folder), "log": f"{folder}.log",
+            "directory": str(folder.parent), "environment": {}}
+
+
+@pytest.mark.parametrize("words, code, said", [
+    ("echo one; echo 'error: k = 1' >&2; echo; exit 2", 2, "error: k = 1"), ("echo last; exit 1", 1, "last"),
+    ("kill -9 $$", -9, "nothing said"), ("echo $1", 0, "--resume"),
+    ("[ -z $1 ] || { echo 'error: checkpoint = of another run'; exit 2; }; echo anew", 0, "anew")])
+def test_a_job_tells_how_it_ended_and_resumes_what_fits(tmp_path, words, code, said):
+    (tmp_path / "row/checkpoint").mkdir(parents=True)
+    (tmp_path / "row/checkpoint/current.json").write_text("{}", encoding="utf-8")
+    assert yade_job.run(job(tmp_path / "row", words)) == (code, said)
+
+
+def test_a_job_that_is_no_longer_wanted_is_stopped(tmp_path):
+    begin = time.time()
+    code, _ = yade_job.run(job(tmp_path / "row", "sleep 60"), lambda: time.time() > begin + 0.1)
+    assert code == -signal.SIGTERM and time.time() < begin + 5
+
+
+def test_a_job_waits_for_whoever_writes_its_folder(tmp_path):
+    (tmp_path / "row").mkdir()
+    holder = subprocess.Popen(["flock", str(tmp_path / "row/lock"), "sleep", "0.5"])
+    begin = time.time()
+    while not yade_job._is_locked(tmp_path / "row"):
+        time.sleep(0.01)
+    assert yade_job.run(job(tmp_path / "row", "exit 0")) == (0, "nothing said")
+    assert time.time() > begin + 0.4 and holder.wait() == 0
+
+
+def test_a_job_array_runs_a_row(swept):
+    out, _, _, rows = swept
+    file = out / "array.sh"
+    assert slurm.write(file, rows, out.parent / "rows.table", SCRIPT, out) == 0
+    assert "#SBATCH --array=1-3\n" in file.read_text(encoding="utf-8")
+    assert subprocess.run(["bash", "-n", str(file)]).returncode == 0
+    done = subprocess.run(["bash", str(file)], env={**os.environ, "SLURM_ARRAY_TASK_ID": "3"}, capture_output=True,
+                          encoding="utf-8")
+    assert done.returncode == 1 and "failed: impossible ended with 2: error: radius_max" in done.stderr
+
+
+def test_the_page_draws_each_swept_parameter_and_links_the_reports(tmp_path):
+    rows = []
+    for number, (depth, kind) in enumerate([(1e-3, "sharp"), (2e-3, "sharp"), (1e-3, "worn"), (2e-3, "worn")]):
+        folder = tmp_path / f"row {number}"
+        folder.mkdir()
+        (folder / "report.html").write_text("", encoding="utf-8")
+        values = {"depth": depth, "kind": kind, "kn": 1e9}
+        (folder / "summary.json").write_text(json.dumps({
+            "exit_code": 0, "files": {}, "parameters": values, "wall_time": {"total": 60}, "results": {
+                "mean_cutting_force": {"value": 1e6 * depth, "unit": "N/m"}, "same": {"value": 1.0, "unit": "-"},
+                "name": {"value": "none", "unit": "-"}}}), encoding="utf-8")
+        rows.append(sweep.Row(folder.name, {"depth": "", "kind": ""}, values, 1, folder, {}))
+    text = page.write(tmp_path, rows, {"depth": "m", "kind": "", "kn": "N/m"}).read_text(encoding="utf-8")
+    assert "4 of 4 rows done" in text and text.count("<img") == 2 and 'href="row%202/report.html"' in text
+    assert "<td class=\"number\">2 mm</td>" in text and "2 kN/m" in text and "<th>same" not in text
+    for name in ("depth", "kind"):
+        assert (tmp_path / f"{name}.png").stat().st_size > 5000
