@@ -180,7 +180,7 @@ def connected(address):
     """A client of the dask scheduler at `address`. Raises ParameterError where none answers."""
     require_dask()
     import distributed
-    for name in ("distributed", "distributed.client"):
+    for name in ("distributed", "distributed.client", "asyncio"):
         logging.getLogger(name).setLevel(logging.CRITICAL)
     try:
         return distributed.Client(address, timeout=PATIENCE)
