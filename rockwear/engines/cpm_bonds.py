@@ -5,7 +5,7 @@ from collections import namedtuple
 import numpy as np
 from yade import O, Vector3
 
-from rockwear.engines.bond_log import INTACT, SEPARATED, BondLog, Crack
+from rockwear.engines.bond_log import BROKEN, INTACT, SEPARATED, BondLog, Crack
 
 LOOK_PERIOD = 10
 """Steps between looks at a bond that has slipped or softened."""
@@ -14,6 +14,8 @@ SHARES = 4
 STRAIGHT = 10
 """Points on the path that a bond is taken to have come before the first look that finds it softened or slipped."""
 ZERO = Vector3.Zero
+SPENT = 1.0 - 1e-6
+"""Damage of a bond that slip has broken: YADE keeps it, as a contact with friction, until it opens."""
 UNBREAKABLE = 1e29
 """Strength (N) from which a bond is not to break at all."""
 
@@ -40,6 +42,16 @@ def _slip_before(law, contact):
     return work - 0.5 * before**2 / law.kt
 
 
+def _lost_by_damage(law, contact, omega):
+    """(J of the normal force, J of slip) that a bond dissipates in the next step, where its damage is raised to omega
+    and its forces fall to what the law then allows."""
+    phys = contact.phys
+    Fn, shear, left = -phys.normalForce.dot(contact.geom.normal), contact.shear_force.norm(), 1.0 - phys.omega
+    kept = (1.0 - omega) / left if Fn > 0.0 else 1.0
+    limit = law.shear_limit(omega, kept * Fn)
+    return 0.5 * Fn**2 * (1.0 - kept) / (law.kn * left), 0.5 * max(shear**2 - limit**2, 0.0) / law.kt
+
+
 _Contact = namedtuple("_Contact", "interaction geom phys slipped shear_force")
 """A bond in YADE, with epsTPl and shearForce. YADE gives these by reference: they are what they are now at any time."""
 
@@ -56,12 +68,15 @@ class CpmBonds(BondLog):
     """All bonds of the rock under a law that YADE's concrete model (Law2_ScGeom_CpmPhys_Cpm) is.
 
     The C++ law gives every force. A look reads the damage omega and the slip of a bond, for the crack log and for the
-    energy. What damage dissipates follows from omega alone. The work of slip is a sample: that of one step, the force
+    energy. What tension dissipates follows from omega alone. The work of slip is a sample: that of one step, the force
     of its two ends times what the bond slipped, counts for all steps between two looks. (Forces of looks ten steps
     apart, half a period of a bond, overstate it, because bonds slip while their force is low.) Bonds have their turns
     one after the other, bond n at steps n, n + period, ..., so that samples of many bonds even out and every step costs
     the same. Bonds that have neither softened nor slipped are looked at more rarely; what one slipped before it
     is found to have, the law tells from a straight path to where it is found.
+
+    C++ knows no damage by slip: a look counts what the bond slipped since the last one and raises the damage by it. A
+    bond that slip has broken stays a contact in YADE until it opens; what it slips until then is booked here too.
 
     C++ erases a bond that has opened to its end; if its particles meet again, that is a plain contact, by their radii
     (which must not overlap when they are bonded). YADE turns the total shear strain of a bond with the contact, but not
@@ -102,7 +117,7 @@ class CpmBonds(BondLog):
         # By turn: {number: contact} and {number: (contact, omega and slipped part of the strain at the last look)}.
         self.quiet = [{} for _ in range(self.between_quiet)]
         self.active = [{} for _ in range(self.between_looks)]
-        self._follow(np.flatnonzero(self.status == INTACT))
+        self._follow(np.flatnonzero(self.status != SEPARATED))
         if self.strains is not None:
             self._set_strains(*self.strains)
             self.strains = None
@@ -145,7 +160,7 @@ class CpmBonds(BondLog):
             # YADE leaves the slip of a bond without any shear strength as it is.
             if contact.slipped == slipped and contact.phys.omega == omega and contact.shear_force != ZERO:
                 continue
-            self._look(n, contact, omega, self.forces_before.get(n))
+            self._look(n, contact, omega, slipped, self.forces_before.get(n))
         self._look_at_quiet(self.quiet[O.iter % len(self.quiet)])
         self._prepare()
 
@@ -154,9 +169,9 @@ class CpmBonds(BondLog):
             if contact.slipped != ZERO or contact.phys.omega:
                 del turn[n]
                 self._dissipate(n, _slip_before(self.laws[n], contact), True)
-                self._damage(n, contact, 0.0)
+                self._damage(n, contact, 0.0, ZERO)
 
-    def _look(self, n, contact, omega_before, force_before=None):
+    def _look(self, n, contact, omega_before, slipped_before, force_before=None):
         """Bring an active bond up to date; with its force at the start of the step, sample its slip."""
         force, law = -contact.shear_force, self.laws[n]
         if contact.phys.omega >= 1.0:
@@ -166,18 +181,31 @@ class CpmBonds(BondLog):
             work = (force + force_before).dot(contact.geom.shearInc)
             stored = (force.squaredNorm() - force_before.squaredNorm()) / law.kt
             self._dissipate(n, 0.5 * self.between_looks * (work - stored), True)
-        self._damage(n, contact, omega_before)
+        self._damage(n, contact, omega_before, slipped_before)
 
-    def _damage(self, n, contact, omega_before):
-        """Bring the damage up to date; turn the slip of a bond that has not broken."""
+    def _damage(self, n, contact, omega_before, slipped_before):
+        """Bring the damage up to date; turn the slip of a bond that has not opened to its end."""
         law, omega = self.laws[n], contact.phys.omega
         if omega > omega_before:
             self._dissipate(n, law.dissipated(min(omega, 1.0)) - law.dissipated(omega_before), False)
-        if omega < 1.0:
-            _turn(contact)
-            self._keep(n, contact)
-        else:
-            self._break(n, contact)
+        if omega >= 1.0:
+            self._log(n, contact)
+            self._separate(n)
+            return
+        _turn(contact)
+        slip = (contact.slipped - _in_plane(slipped_before, contact.geom.normal)).norm() * contact.phys.refLength
+        if slip and omega < SPENT and law.slip_end < math.inf:
+            omega = min(omega + slip / law.slip_end, SPENT)
+            in_tension, in_shear = _lost_by_damage(law, contact, omega)
+            self._dissipate(n, in_tension, False)
+            # Where there is a look at every step, the slip of the next one is in its sample.
+            if self.between_looks > 1:
+                self._dissipate(n, in_shear, True)
+            contact.phys.setDamage(omega)
+            if omega == SPENT:
+                self._log(n, contact)
+                self.status[n] = BROKEN
+        self._keep(n, contact)
 
     def _dissipate(self, n, work, by_slip):
         self.dissipated[n] += work
@@ -185,10 +213,10 @@ class CpmBonds(BondLog):
         if by_slip:
             self.by_slip[n] += work
 
-    def _break(self, n, contact):
-        self._separate(n)
+    def _log(self, n, contact):
+        """Add a bond that breaks now to the cracks."""
         first, second = O.bodies[contact.interaction.id1], O.bodies[contact.interaction.id2]
-        if first is None or second is None:
+        if self.status[n] != INTACT or first is None or second is None:
             return
         place, line = 0.5 * (first.state.pos + second.state.pos), second.state.pos - first.state.pos
         mode = 1 if self.by_slip[n] <= 0.5 * self.dissipated[n] else 2
@@ -204,9 +232,9 @@ class CpmBonds(BondLog):
     def look_at_all(self):
         """Bring damage and status of all bonds up to date."""
         for turn in self.active:
-            for n, (contact, omega, _) in list(turn.items()):
+            for n, (contact, omega, slipped) in list(turn.items()):
                 if contact.phys.omega != omega:
-                    self._look(n, contact, omega)
+                    self._look(n, contact, omega, slipped)
         for turn in self.quiet:
             self._look_at_quiet(turn)
 
@@ -219,11 +247,10 @@ class CpmBonds(BondLog):
         self.quiet = [dict(sorted(turn.items())) for turn in self.quiet]
         self.active = [dict(sorted(turn.items())) for turn in self.active]
         for n, (contact, omega, slipped) in [bond for turn in self.active for bond in turn.items()]:
-            if omega:
-                contact.phys.setDamage(omega)
             if contact.slipped != slipped:
-                _turn(contact)
-                self._keep(n, contact)
+                self._damage(n, contact, omega, slipped)
+            if contact.phys.omega:
+                contact.phys.setDamage(contact.phys.omega)
         self._prepare()
 
     def _shift(self, n, shift):

@@ -114,7 +114,7 @@ def test_with_a_boundless_fracture_energy_tension_stays_at_its_peak():
     assert law.drive(un, 0 * un)[0] == pytest.approx(RN * np.array([1, 1, 1, 0.5, 1]), rel=1e-3)
 
 
-def test_damage_lowers_the_cohesion_and_slip_does_not_damage():
+def test_damage_lowers_the_cohesion_and_without_shear_energy_slip_does_not_damage():
     bond = COHESIVE.initial_state()
     COHESIVE.respond(bond, 10e-6, (0.0,))
     omega = bond.softening
@@ -124,6 +124,63 @@ def test_damage_lowers_the_cohesion_and_slip_does_not_damage():
         assert Fn == pytest.approx(KN * un * (0.25 if un > 0 else 1.0))
         assert Ft == pytest.approx(math.copysign(0.25 * RT - MU * Fn, ut))
     assert bond.softening == omega
+
+
+SHEAR_ENERGY = 3.6
+SLIPPING = Cohesive(bond_fracture_energy=ENERGY, bond_shear_energy=SHEAR_ENERGY, **BRITTLE)
+SLIP_END = 2 * SHEAR_ENERGY / RT
+"""60 um, five times what the bond shears before it slips."""
+
+
+@pytest.mark.parametrize("area", [1.0, 0.3])
+@pytest.mark.parametrize("Fn", [0.0, -1e5, -1e6])
+def test_slip_takes_the_cohesion_and_the_shear_energy(Fn, area):
+    law, Fn = SLIPPING.scaled(area), area * Fn
+    friction, strength = -MU * Fn, area * RT
+    onset = (strength + friction) / KT
+    # Without friction, force falls in a line from the peak to zero at SLIP_END.
+    end = SLIP_END + friction / KT
+    ut = np.array([0.0, onset, 0.75 * onset + 0.25 * end, end - 1e-12, 2 * end])
+    normal, force = law.drive(np.full(5, Fn / KN), ut)
+    assert force == pytest.approx([0.0, strength + friction, 0.75 * strength + friction, friction, friction], abs=1e-2)
+    assert normal == pytest.approx(Fn)
+    # Work up to the end, less that of friction and what unloading gives back.
+    spent = work(force[:-1], ut[:-1]) - friction * SLIP_END - 0.5 * friction**2 / KT
+    assert spent == pytest.approx(area * SHEAR_ENERGY, rel=1e-6)
+    assert law.fracture_energy()[1] == pytest.approx(area * SHEAR_ENERGY)
+
+
+@pytest.mark.parametrize("sampled", [3, 400])
+def test_slip_is_exact_however_it_is_sampled(sampled):
+    ut = np.linspace(RT / KT, 0.8 * SLIP_END, sampled)
+    _, force = SLIPPING.drive(np.zeros(sampled + 1), np.concatenate([[0.0], ut]))
+    assert force[1:] == pytest.approx(RT * (1 - (ut - RT / KT) / (SLIP_END - RT / KT)), rel=1e-9)
+
+
+def test_slip_back_and_forth_damages_as_slip_in_one_direction():
+    bond = SLIPPING.initial_state()
+    for ut in (0.5, 0.3, 0.5, 0.2):
+        SLIPPING.respond(bond, 0.0, (ut * SLIP_END,))
+    # Slip up to 0.5, none on the way of unloading and back, and then the other way.
+    (force,), omega = SLIPPING.respond(bond, 0.0, (0.2 * SLIP_END,))[1], bond.softening
+    first = (0.5 * SLIP_END - RT / KT) / (SLIP_END - RT / KT)
+    assert omega > first and -force == pytest.approx((1 - omega) * RT)
+    assert 0.2 * SLIP_END - force / KT == pytest.approx(bond.ut_plastic[0])
+    assert omega == pytest.approx((first * SLIP_END + (first * SLIP_END - bond.ut_plastic[0])) / SLIP_END)
+
+
+def test_slip_weakens_a_bond_in_tension():
+    bond = SLIPPING.initial_state()
+    SLIPPING.respond(bond, 0.0, (0.5 * SLIP_END,))
+    omega = bond.softening
+    Fn, _ = SLIPPING.respond(bond, 0.5 * ONSET, (0.5 * SLIP_END,))
+    assert 0.3 < omega < 0.5 and Fn == pytest.approx((1 - omega) * 0.5 * RN)
+
+
+def test_with_too_little_shear_energy_it_is_brittle_in_shear():
+    law = Cohesive(bond_fracture_energy=ENERGY, bond_shear_energy=1e-3, **BRITTLE)
+    _, force = law.drive(np.full(2, -1e6 / KN), np.array([0.999, 1.01]) * (RT + MU * 1e6) / KT)
+    assert force == pytest.approx([0.999 * (RT + MU * 1e6), MU * 1e6])
 
 
 def test_friction_remains_after_the_last_of_the_tension():

@@ -62,6 +62,16 @@ def test_looks_turn_the_slip_of_a_pair_that_rotates(checks):
         assert found[period]["force"] < error < 0.2 * missed and abs(found[period]["energy"]) < 1e-3
 
 
+def test_slip_damages_as_the_law_says_late_by_a_look(checks):
+    """Errors of the first order in the time between looks."""
+    found = checks["damaged by slip"]
+    for case, error in (("1000 steps, 1", 1e-2), ("4000 steps, 1", 2.5e-3), ("4000 steps, 10", 2.5e-2)):
+        assert found[case]["force"] < error and abs(found[case]["energy"]) < error
+        # Broken, and still a contact with friction.
+        assert found[case]["mode"] == 2 and found[case]["status"] == 1
+    assert found["4000 steps, 1"]["force"] < 0.3 * found["1000 steps, 1"]["force"]
+
+
 def test_the_work_of_slip_goes_to_the_two_particles_in_halves(checks):
     found = checks["slip by particle"]
     assert found["halves"] == pytest.approx([0.5, 0.5], rel=1e-12) and found["left"] == 0
@@ -73,6 +83,7 @@ def test_energy_of_a_free_pair_that_flies_apart(checks):
         assert found["broken"] == 1
         assert found["residual"] < 1e-3
     assert checks["flying, looked at every ten steps"]["residual"] < 1e-3
+    assert checks["flying, damaged by slip"]["residual"] < 5e-3
 
 
 def test_a_stronger_bond_is_the_same_bond_larger(checks):
@@ -83,6 +94,7 @@ def test_a_resumed_bond_is_equal_bit_for_bit(checks):
     for found in checks["resuming"].values():
         assert found["difference"] == 0 and found["largest"] > 1e4
     assert 0.1 < checks["resuming"]["cohesive"]["softened"]
+    assert 0.1 < checks["resuming"]["damaged by slip"]["softened"] < 1
 
 
 def test_an_engine_broken_on_purpose_is_noticed(checks):

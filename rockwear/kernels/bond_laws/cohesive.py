@@ -1,10 +1,10 @@
-"""Bond with a fracture energy: softening in tension, Coulomb slip in shear."""
+"""Bond with fracture energies: softening in tension, and in shear by Coulomb slip."""
 import math
 
 from rockwear.kernels.bond_laws.base import KN, KT, MU, LinearBondLaw
 from rockwear.kernels.bond_laws.coulomb import COHESION, TENSION
-from rockwear.kernels.checks import positive
-from rockwear.kernels.parameter import Parameter, plausible
+from rockwear.kernels.checks import not_negative, positive
+from rockwear.kernels.parameter import Parameter, number, plausible
 
 BRITTLEST = 1.001
 """Least opening at the end of softening, over that at the peak."""
@@ -15,17 +15,19 @@ class Cohesive(LinearBondLaw):
 
     Tension is [Rojek 2003, eqs 4.17-4.19] driven by opening alone: with u0 = Rn/kn, uf = 2 G/Rn and the largest opening
     so far u, omega = (1 - u0/u)/(1 - u0/uf) and Fn = (1 - omega) kn un; compression is elastic. Shear is elastic up to
-    |Ft| = (1 - omega) Rt - mu Fn (Fn positive in tension) [Bahaaddini 2018, eqs 2-4] and slips there; slip does not
-    damage the bond. At u = uf the bond is broken, and Coulomb friction remains. The work to break it in tension is G.
+    |Ft| = (1 - omega) Rt - mu Fn (Fn positive in tension) [Bahaaddini 2018, eqs 2-4] and slips there. Slip by ds raises
+    omega by ds/sf, sf = 2 G2/Rt: without normal force, shear softens linearly with the displacement, and breaking a
+    bond takes the work G2 (slip weakening, as of J. R. Rice, 1980); under pressure, friction takes more beside it. At
+    omega = 1 the bond is broken, and Coulomb friction remains. The work to break it in tension is G.
 
-    This is the published part of YADE's concrete model (Law2_ScGeom_CpmPhys_Cpm, damLaw 0), which carries it in C++.
-    (Its equivStrainShearContrib lets shear drive the damage too, yet damages the limit of shear and not its stiffness:
-    that is not [Rojek 2003]'s law, and it is left at 0.)
+    This is the published part of YADE's concrete model (Law2_ScGeom_CpmPhys_Cpm, damLaw 0), which carries it in C++,
+    but for the damage by slip, which engines.cpm_bonds adds. (Its equivStrainShearContrib lets shear drive the damage
+    by strain: friction alone would then break a bond under pressure, and it is left at 0.)
 
     kn, kt  N/m, > 0      mu  friction within the bond and after breakage, >= 0
-    bond_tension, bond_cohesion  Pa, bond_fracture_energy  J/m2, all > 0: of a bond that stands for 1 m2 of crack, see
-    Coulomb; a low cohesion does not cut the tension here. A bond's elastic energy Rn^2/(2 kn) is a lower bound of G.
-    Raises ParameterError.
+    bond_tension, bond_cohesion  Pa, bond_fracture_energy (G)  J/m2, all > 0: of a bond that stands for 1 m2 of crack,
+    see Coulomb; a low cohesion does not cut the tension here. bond_shear_energy (G2)  J/m2; 0: slip does not damage.
+    Elastic energies Rn^2/(2 kn) and Rt^2/(2 kt) are lower bounds of G and G2. Raises ParameterError.
     """
 
     name = "cohesive"
@@ -33,12 +35,17 @@ class Cohesive(LinearBondLaw):
     yade_law = "Cpm"
     parameters = (KN, KT, TENSION, COHESION,
                   Parameter("bond_fracture_energy", 30.0, "J/m2", plausible(1e-4, 1e6),
-                            "work to break a bond in tension, over its area"), MU)
+                            "work to break a bond in tension, over its area"),
+                  Parameter("bond_shear_energy", 0.0, "J/m2", number(0, 1e6),
+                            "work to break a bond in shear without normal force, over its area; 0: slip does not "
+                            "damage bonds"), MU)
 
-    def __init__(self, *, kn, kt, bond_tension, bond_cohesion, bond_fracture_energy, mu):
+    def __init__(self, *, kn, kt, bond_tension, bond_cohesion, bond_fracture_energy, mu, bond_shear_energy=0.0):
         super().__init__(kn=kn, kt=kt, Rn=positive("bond_tension", bond_tension, "Pa"),
                          Rt=positive("bond_cohesion", bond_cohesion, "Pa"), H=math.inf, mu=mu)
         self.end = 2 * positive("bond_fracture_energy", bond_fracture_energy, "J/m2") / self.Rn
+        energy = not_negative("bond_shear_energy", bond_shear_energy, "J/m2")
+        self.end_of_slip = 2 * energy / self.Rt if energy else math.inf
 
     @property
     def onset(self):
@@ -50,9 +57,14 @@ class Cohesive(LinearBondLaw):
         """Opening (m) at which the bond is broken."""
         return max(self.end, BRITTLEST * self.onset)
 
+    @property
+    def slip_end(self):
+        """Slip (m) that takes all of the cohesion."""
+        return max(self.end_of_slip, BRITTLEST * self.Rt / self.kt)
+
     def fracture_energy(self):
-        """(J to break the bond in pure tension, math.inf in pure shear, where it slips)."""
-        return 0.5 * self.Rn * self.gone, math.inf
+        """(J to break the bond in pure tension, J in pure shear: math.inf if it slips for ever)."""
+        return 0.5 * self.Rn * self.gone, 0.5 * self.Rt * self.slip_end
 
     def opening(self, softening):
         """Largest opening (m) so far of a bond of this omega > 0."""
@@ -80,5 +92,11 @@ class Cohesive(LinearBondLaw):
         Ft = self._shear(bond, Fn, ut)
         norm, limit = math.hypot(*Ft), self.shear_limit(omega, Fn)
         if norm > limit:
-            Ft = self._slip(bond, ut, Ft, limit / norm)
+            # The limit falls with the slip, but not below zero.
+            slip = min((norm - limit) / (self.kt - self.Rt / self.slip_end), norm / self.kt)
+            omega += slip / self.slip_end
+            if omega >= 1.0:
+                return None
+            bond.softening = omega
+            Ft = self._slip(bond, ut, Ft, 1.0 - self.kt * slip / norm)
         return Fn, Ft

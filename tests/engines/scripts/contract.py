@@ -379,7 +379,8 @@ class Softening(Tension):
     """The same with bonds that YADE's concrete model carries, and dashpots: at the checkpoint some soften and some
     slip."""
 
-    law = Cohesive(kn=KN, kt=KT, mu=MU, bond_tension=RN, bond_cohesion=0.3 * RN, bond_fracture_energy=1.0)
+    law = Cohesive(kn=KN, kt=KT, mu=MU, bond_tension=RN, bond_cohesion=0.3 * RN, bond_fracture_energy=1.0,
+                   bond_shear_energy=0.5)
 
     def __init__(self):
         super().__init__()

@@ -25,6 +25,7 @@ LAWS = {"brittle": ElasticBrittle(**COMMON), "damage": ElasticDamage(H=H, **COMM
         "Padova, denting": NonlinearElastoPlastic(Rc=1e5, compression=Parabolic(b2=3e9))}
 AREA = dict(kn=KN, kt=KT, bond_tension=RN, bond_cohesion=2 * RT, mu=0.5)
 LAWS |= {"Coulomb": Coulomb(**AREA), "cohesive": Cohesive(bond_fracture_energy=0.75, **AREA)}
+SLIPPING, HALF_SLIPPED = (Cohesive(bond_fracture_energy=0.75, bond_shear_energy=G, **AREA) for G in (3.6, 36.0))
 LINEAR = [*list(LAWS)[:4], "Coulomb"]
 END_N, END_T = RN / KN + RN / H, RT / KT + RT / H
 
@@ -176,6 +177,25 @@ def slip_by_particle(law):
             "exact": law.Rt * (phys.epsT.norm() * phys.refLength - law.Rt / law.kt)}
 
 
+def damaged_by_slip(law, steps, period):
+    """A pair under pressure that shears forth, back and forth, until slip has broken it.
+
+    -> errors of the force, over the strength, and of the energy released; what is left of the pair.
+    """
+    corners = np.array([0.0, 0.6, 0.2, 1.4]) * law.slip_end
+    way = np.concatenate([[0.0], np.cumsum(abs(np.diff(corners)))])
+    ut, un = np.interp(np.linspace(0.0, way[-1], steps), way, corners), np.full(steps, -1e-6)
+    un[0] = 0.0
+    response = drive_pair(law, un, ut, period=period)
+    bonds, exact = response.bonds, follow(law, response.un, response.ut)
+    path = np.column_stack([response.un, response.ut])
+    work = np.sum(0.5 * (exact[1:] + exact[:-1]) * np.diff(path, axis=0))
+    crack, = bonds.cracks
+    energy = bonds.elastic_energy() + bonds.energy_released
+    return {"force": float(abs(forces(response) - exact).max() / law.Rn), "energy": float(energy / work - 1),
+            "mode": crack.mode, "status": int(bonds.status[0])}
+
+
 def flying_apart(law, period=1):
     """A free pair driven apart, turning and shearing: energy that is in no balance, over the energy released."""
     bonds = drive_pair(law, np.zeros(2), np.zeros(2), period=period).bonds
@@ -209,7 +229,7 @@ def resuming(law):
         response = drive_pair(law, un, ut)
         bonds = response.bonds
         bonds.erase_separated()
-        state = bonds.state()
+        state, softened = bonds.state(), float(bonds.softening()[0])
         set_free(bonds)
         O.bodies[1].state.vel, O.bodies[1].state.angVel = Vector3(0.02, 0.05, 0.0), Vector3(3.0, 5.0, -8.0)
         if resumed:
@@ -224,7 +244,7 @@ def resuming(law):
         for _ in range(150):
             O.step()
             rows.append([*O.forces.f(1), *O.forces.t(0), bonds.energy_released])
-        return np.array(rows), float(bonds.softening()[0])
+        return np.array(rows), softened
 
     path = sys.argv[-1] + ".yade.gz"
     (whole, softened), (resumed, _) = half(False), half(True)
@@ -273,14 +293,17 @@ checks = {
     "turning in half the steps": {name: turning(law, 500) for name, law in LAWS.items()},
     "slip by particle": slip_by_particle(LAWS["cohesive"]),
     "looks": {period: looked_at_now_and_then(LAWS["cohesive"], period) for period in (1, 10, 40)},
+    "damaged by slip": {f"{steps} steps, {period}": damaged_by_slip(SLIPPING, steps, period)
+                        for steps, period in ((1000, 1), (4000, 1), (4000, 10))},
     "without realigning": without_realigning(LAWS["cohesive"]),
     "coulomb": {name: coulomb_afterwards(LAWS[name]) for name in LINEAR},
     "work": {name: work_until_gone(LAWS[name]) for name in ("damage", "elasto-plastic", "cohesive")},
     "flying": {name: flying_apart(LAWS[name]) for name in ("brittle", "damage", "elasto-plastic", "Coulomb",
                                                            "cohesive")},
     "flying, looked at every ten steps": flying_apart(LAWS["cohesive"], 10),
+    "flying, damaged by slip": flying_apart(SLIPPING, 10),
     "scaled": {name: strength_factor(law) for name, law in LAWS.items() if name != "cohesive"},
-    "resuming": {name: resuming(law) for name, law in LAWS.items()},
+    "resuming": {name: resuming(law) for name, law in {**LAWS, "damaged by slip": HALF_SLIPPED}.items()},
     "broken on purpose": broken_on_purpose(),
 }
 with open(sys.argv[-1], "w", encoding="utf-8") as file:
