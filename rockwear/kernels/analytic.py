@@ -5,9 +5,9 @@ units (SI here, but any set serves). Temperatures are rises above the initial on
 Conduction of Heat in Solids. Numbers out of range raise ParameterError.
 """
 import numpy as np
-from scipy.special import erfc
+from scipy.special import erfc, erfcx
 
-from rockwear.kernels.checks import not_negative, positive, require
+from rockwear.kernels.checks import not_negative, positive, require, within
 from rockwear.kernels.conduction import STEFAN_BOLTZMANN
 
 _TERMS = np.arange(1, 402, 2)  # odd numbers of the sine series
@@ -50,6 +50,30 @@ def half_space_under_flux(x, t, *, flux, conductivity, density, specific_heat):
     z = x / (2 * np.sqrt(diffusivity(conductivity, density, specific_heat) * t))
     ierfc = np.exp(-z**2) / np.sqrt(np.pi) - z * erfc(z)
     return 2 * flux * np.sqrt(t / (conductivity * density * specific_heat)) * ierfc
+
+
+def sliding_half_spaces(t, *, flux, share, effusivities, conductance):
+    """Faces of two half-spaces that rub on each other from t = 0 on, K, shape of t plus (2,).
+
+    The first takes up the share alpha of the friction heat q, the second the rest [Rojek 2014, eq. 37], and they
+    exchange h (T1 - T2) through their contact. By Laplace's transform, with f(x) = exp(x^2) erfc(x),
+
+        T1 = (S + e2 D)/(e1 + e2),   T2 = (S - e1 D)/(e1 + e2),   S = 2 q sqrt(t/pi),
+        D = T1 - T2 = q (alpha/e1 - (1 - alpha)/e2) (1 - f(b sqrt(t)))/b,   b = h (1/e1 + 1/e2)
+
+    With alpha = e1/(e1 + e2), or after times t >> 1/b^2 with any other, both have the temperature S/(e1 + e2).
+
+    t  s, scalar or array, at least 0;  flux  q, W/m^2;  share  alpha, 0 to 1;  effusivities  e1, e2, W s^0.5/(m^2 K);
+    conductance  h, W/(m^2 K), at least 0
+    """
+    t = np.asarray(t, float)
+    require((t >= 0).all(), "t", t.tolist(), "at least 0", "s")
+    e1, e2 = (positive("effusivities", e, "W s^0.5/(m^2 K)") for e in effusivities)
+    alpha, b = within("share", share, 0, 1), not_negative("conductance", conductance, "W/(m^2 K)") * (1 / e1 + 1 / e2)
+    total = 2 * flux * np.sqrt(t / np.pi)
+    weight = (1 - erfcx(b * np.sqrt(t))) / b if b else 2 * np.sqrt(t / np.pi)
+    gap = flux * (alpha / e1 - (1 - alpha) / e2) * weight
+    return np.stack([total + e2 * gap, total - e1 * gap], axis=-1) / (e1 + e2)
 
 
 def slab_with_jumping_faces(x, t, *, thickness, conductivity, density, specific_heat, jump):

@@ -211,6 +211,54 @@ def test_insulated_network_evens_out_and_keeps_its_heat():
         network.steady_state()
 
 
+STEEL_ON_ROCK = {"tool": (60.0, 7830.0, 450.0), "rock": (5.0, 2500.0, 1970.0)}
+"""Conductivity, density, specific heat."""
+
+
+def rubbed(cells, share, conductance, seconds):
+    """Faces of two bars that rub on each other, their nodes at the faces and on beyond the reach of the heat."""
+    lengths, capacities, edges, conductances, first = [], [], [], [], [0, cells + 1]
+    for start, (conductivity, density, specific_heat) in zip(first, STEEL_ON_ROCK.values()):
+        size = 6 * np.sqrt(conductivity / density / specific_heat * seconds) / cells
+        lengths.append(size)
+        capacities.append(density * specific_heat * size * np.where(np.arange(cells + 1) % cells, 1.0, 0.5))
+        edges.append(start + np.column_stack([np.arange(cells), np.arange(1, cells + 1)]))
+        conductances.append(np.full(cells, conductivity / size))
+    network = HeatNetwork(capacity=np.concatenate(capacities), edges=np.vstack([*edges, [first]]),
+                          conductance=np.concatenate([*conductances, [conductance]]), temperature=0.0)
+    network.source(first, 1e6 * np.array([share, 1 - share]))
+    network.advance(seconds)
+    return network.temperature[first]
+
+
+@pytest.mark.parametrize("conductance", [0.0, 1500.0, 3e5])
+@pytest.mark.parametrize("sharing", ["equal", "effusivity"])
+def test_two_bodies_that_rub_on_each_other(sharing, conductance):
+    effusivities = [effusivity(*values) for values in STEEL_ON_ROCK.values()]
+    share = 0.5 if sharing == "equal" else effusivity_share(*effusivities)
+    exact = analytic.sliding_half_spaces(0.5, flux=1e6, share=share, effusivities=effusivities,
+                                         conductance=conductance)
+    if sharing == "effusivity":
+        assert exact[0] == pytest.approx(exact[1], rel=1e-12)
+    errors = [abs(rubbed(cells, share, conductance, 0.5) / exact - 1).max() for cells in (20, 40, 80)]
+    assert np.polyfit(np.log([20, 40, 80]), np.log(errors), 1)[0] == pytest.approx(-2, abs=0.25)
+    assert errors[-1] < 2e-3
+
+
+def test_sharing_does_not_matter_where_bodies_touch_perfectly():
+    common = dict(flux=1e6, effusivities=(14540.0, 4962.0))
+    time = np.array([0.0, 1e-3, 1.0])
+    best = 2e6 * np.sqrt(time / np.pi) / (14540.0 + 4962.0)
+    for share in (0.0, 0.5, 1.0):
+        found = analytic.sliding_half_spaces(time, share=share, conductance=1e12, **common)
+        np.testing.assert_allclose(found, np.column_stack([best, best]), rtol=1e-6)
+    # Without any exchange each is a half-space under its own flux.
+    apart = analytic.sliding_half_spaces(0.3, share=0.5, conductance=0.0, **common)
+    for rise, (conductivity, density, specific_heat) in zip(apart, [(14540.0, 14540.0, 1.0), (4962.0, 4962.0, 1.0)]):
+        assert rise == pytest.approx(float(analytic.half_space_under_flux(
+            0.0, 0.3, flux=0.5e6, conductivity=conductivity, density=density, specific_heat=specific_heat)))
+
+
 def test_radiating_particle_settles_where_it_gives_off_what_it_gets():
     network = HeatNetwork(capacity=[1.0], edges=[], conductance=1.0, temperature=300.0)
     network.source(0, 1000.0)
