@@ -66,8 +66,8 @@ def tables(found):
             "Exact rise of the faces of tool and rock under equal sharing, over that, for a conductance of the "
             "contact:", "", *generated.table(["contact", *TIMES], faces()),
             "## A short cut", "",
-            f"`steady_cut.py`, {1e3 * CUT['cut_length']:g} mm, no wear, {work:.3g} J/m of friction at the tool; K above "
-            "the start.", "",
+            f"`steady_cut.py`, {1e3 * CUT['cut_length']:g} mm, no wear, {work:.3g} J/m of friction at the tool; K "
+            "above the start.", "",
             *generated.table(["sharing", "hottest of the tool", "mean of the tool", "hottest of the rock"],
                              [[name, *(f"{rise:.3g}" for rise in values)] for name, values in (
                                  ("effusivity", by_effusivity), ("equal", even),
