@@ -1,8 +1,10 @@
 """Fits the micro-parameters of a rock to laboratory values: search on small specimens, then on full ones, then a check
 on packings that the fit has not seen. The entry is calibration/fit.py."""
+import resource
 import sys
 import time
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -21,8 +23,9 @@ FULL = Stage("full", side=87.2, hurry=1.0, seeds=(11, 12, 13, 14, 15))
 CHECK = Stage("check", side=87.2, hurry=1.0, seeds=(21, 22, 23, 24, 25))
 """Full specimens have 2,100 particles, as those of [Rojek 2003, 5.1]; small ones a quarter of them, and twice the
 scatter: they give the slopes."""
-MOST = {"small": 7, "full": 3}
-"""Measurements of a stage."""
+SEARCH = {"small": (7, 1.0), "full": (3, 0.4)}
+"""{stage: (measurements at most, part of what is allowed that they may miss at the end)}. Small specimens differ from
+full ones by as much as is allowed: to search on them for less is lost time."""
 CHECKS = 2
 """Checks in all. Where the first misses a target its packings join those of the fit, and others check the new rock."""
 LEAST_NOISE, COMMON_SEEDS = 0.004, 0.5
@@ -31,16 +34,20 @@ LEAST_NOISE, COMMON_SEEDS = 0.004, 0.5
 
 @dataclass
 class Step:
-    """One set of tests: the stage, the unknowns x (n,), {Observable: (packings,) values}."""
+    """One set of tests: the stage, the unknowns x (n,), {Observable: (packings,) values}; wall and processor time
+    since the fit began, s."""
 
     stage: str
     x: np.ndarray
     values: dict
+    seconds: float = 0.0
+    processor: float = 0.0
 
 
 @dataclass
 class Fit:
-    """A fit and how it went. verdicts: {Observable: Verdict} of the last check; error: (n,), of log unknowns."""
+    """A fit and how it went. verdicts: {Observable: Verdict} of the last check; error: (n,), of log unknowns; its
+    tests took the wall and processor time of the last step."""
 
     x: np.ndarray
     error: np.ndarray
@@ -48,7 +55,6 @@ class Fit:
     verdicts: dict = field(default_factory=dict)
     not_failed: list = field(default_factory=list)
     failures: list = field(default_factory=list)
-    seconds: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -62,26 +68,32 @@ class Verdict:
     met: bool
 
 
-def fit(*, micro, measure, first_stage=STAGES[0], say=print):
+def fit(*, micro, measure, first_stage=STAGES[0], say=partial(print, flush=True)):
     """Fit of the unknowns of `micro`. measure(x, Stage) -> {Observable: (packings,) values}: the laboratory;
     first_stage: of STAGES."""
-    found, began = Fit(micro.first, np.zeros(len(micro.first))), time.time()
+    found, began, processor_began = Fit(micro.first, np.zeros(len(micro.first))), time.time(), processor_time()
     problem = Problem(target=np.array([float(o.scaled(o.target)) for o in micro.observables]),
                       tolerance=np.array([AIM * o.tolerance for o in micro.observables]),
                       low=micro.low, high=micro.high)
 
     def tested(x, stage):
         values = measure(x, stage)
-        found.steps.append(Step(stage.name, np.array(x), values))
-        say(rock_page.progress(found.steps[-1], micro, time.time() - began))
+        found.steps.append(Step(stage.name, np.array(x), values, time.time() - began,
+                                processor_time() - processor_began))
+        say(rock_page.progress(found.steps[-1]))
         return values
 
     model, seen = Surrogate(*micro.slopes()), {}
     for stage in (SMALL, FULL)[STAGES.index(first_stage):]:
-        solution = solve(lambda x: statistics(tested(x, stage)), model, problem, start=found.x, most=MOST[stage.name])
+        most, part = SEARCH[stage.name]
+        solution = solve(lambda x: statistics(tested(x, stage)), model, problem, start=found.x, most=most,
+                         enough=part / AIM)
         found.x = solution.x
-        fitted = next(step for step in found.steps if step.stage == stage.name and np.array_equal(step.x, found.x))
-        model, seen = model.next_stage(found.x), fitted.values
+        seen = next(step.values for step in found.steps
+                    if step.stage == stage.name and np.array_equal(step.x, found.x))
+        if stage is SMALL:
+            found.x = model.solve(problem, found.x)
+        model = model.next_stage(found.x)
     for number in range(CHECKS):
         stage = replace(CHECK, name=f"check {number + 1}", seeds=tuple(seed + 10 * number for seed in CHECK.seeds))
         values = tested(found.x, stage)
@@ -94,8 +106,13 @@ def fit(*, micro, measure, first_stage=STAGES[0], say=print):
         model = model.next_stage(found.x)
     errors = np.array([spread(o, values[o])[1] for o in micro.observables])
     found.error = uncertainty(model, problem, found.x, errors)
-    found.seconds = time.time() - began
     return found
+
+
+def processor_time():
+    """s that the tests took so far, which does not depend on what else the machine does."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
 
 
 def statistics(values):

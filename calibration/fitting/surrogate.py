@@ -90,17 +90,17 @@ class Solution:
         return self.steps[-1][0]
 
 
-def solve(measure, surrogate, problem, *, start, most):
+def solve(measure, surrogate, problem, *, start, most, enough=1.0):
     """Solution of at most `most` measurements. measure(x (n,)) -> (y (m,), noise (m,)).
 
-    It ends where every target is met to its tolerance, or where the model knows no better place.
+    It ends where every target is met to `enough` times its tolerance, or where the model knows no better place.
     """
     solution, x = Solution(), np.array(start, float)
     for _ in range(most):
         y, noise = measure(x)
         surrogate.add(x, y, noise)
         solution.steps.append((x, y, noise))
-        if misfit(y, problem) <= 1:
+        if misfit(y, problem) <= enough:
             solution.reached = True
             return solution
         new = surrogate.solve(problem, x)
