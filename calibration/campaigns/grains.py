@@ -31,7 +31,7 @@ CONFINEMENTS = 1e6, 5e6, 10e6
 """Pa, in the range of [Bahaaddini 2018, fig. 8]."""
 STUDIED = 5e6
 """Pa, confinement of the parameter study [Bahaaddini 2018, sec. 4]."""
-SEEDS = tuple(range(51, 61))
+SEEDS = tuple(range(61, 71))
 """Packings that the rock was not calibrated on; the first CONFINED of them under confinement too."""
 CONFINED = 5
 STUDY_SEEDS = SEEDS[:2]
