@@ -1,0 +1,138 @@
+"""Granular flow [Rojek 2003, ch. 14]: the angle of repose over friction and rolling resistance, and sand that flows
+into a tube over amplitude and frequency.
+
+    python3 -m calibration.campaigns.granular DIR
+
+Runs that finished are kept, one run at a time. Writes granular.md, granular.png and provenance.json into DIR.
+"""
+import math
+import sys
+from pathlib import Path
+
+from calibration import generated
+from calibration.campaigns.runs import Runs, wait_for
+from rockwear.report import palette, plots
+
+HEAP, TUBE = "yade_scripts/angle_of_repose.py", "yade_scripts/vibrated_tube.py"
+FRICTIONS, ROLLING = (0.1, 0.3, 0.5, 0.8), (0.0, 0.1, 0.3)
+SIZE = dict(particles=1500, report="false")
+MIDDLE = dict(friction=0.5, rolling_resistance=0.1)
+CHECKS = {
+    "seed 2": dict(seed=2), "seed 3": dict(seed=3), "twice as many grains": dict(particles=3000),
+    "Young's modulus 1e7 Pa": dict(young=1e7), "smooth plate": dict(plate="smooth"),
+    "rolling resistance 0.02": dict(rolling_resistance=0.02), "no friction on walls": dict(wall_friction=0.0)}
+"""{what differs from the middle point: values}."""
+AMPLITUDES, FREQUENCIES = (1e-4, 2e-4, 4e-4), (25.0, 50.0)
+SAND = dict(vibrating=0.5, report="false")
+
+
+def heap_values():
+    """{key: values} of all heaps; keys: (friction, rolling resistance), or what is checked."""
+    found = {(mu, eta): {**SIZE, "friction": mu, "rolling_resistance": eta} for eta in ROLLING for mu in FRICTIONS}
+    return {**found, **{name: {**SIZE, **MIDDLE, **change} for name, change in CHECKS.items()}}
+
+
+def tube_values():
+    """{(amplitude, frequency): values} of all tubes, without vibration first."""
+    still = {(0.0, FREQUENCIES[-1]): {**SAND, "amplitude": 0.0}}
+    return {**still, **{(a, f): {**SAND, "amplitude": a, "frequency": f} for f in FREQUENCIES for a in AMPLITUDES}}
+
+
+def folder_of(key):
+    """Name of a run's folder."""
+    words = key if isinstance(key, str) else "_".join(f"{value:g}" for value in key)
+    return "".join(c if c.isalnum() or c in "-_." else "_" for c in words)
+
+
+def angle_of(run):
+    """The angle with its error, as text."""
+    return f"{run.result('angle_of_repose'):.1f} ± {run.result('angle_of_repose_standard_error'):.1f}"
+
+
+def heap_words(key, run):
+    """A line on a finished heap."""
+    return f"{folder_of(key)}: {angle_of(run)} deg"
+
+
+def tube_words(key, run):
+    """A line on a finished tube."""
+    return f"{folder_of(key)}: {1e3 * run.result('tube_mass'):.3g} g"
+
+
+def heap_lines(runs):
+    """Tables of the heaps, as lines of Markdown."""
+    rows = [[f"{eta:g}", *(angle_of(runs[mu, eta]) for mu in FRICTIONS)] for eta in ROLLING]
+    lines = ["## Angle of repose, degrees, over friction and rolling resistance", "",
+             *generated.table(["rolling resistance", *(f"friction {mu:g}" for mu in FRICTIONS)], rows)]
+    lines += [f"The relation of Zhou, Xu, Yu and Zulli (2002) for the same numbers; it was made for rolling resistances "
+              f"up to about {zhou_reach(runs):.2f} in this measure.", ""]
+    rows = [[f"{eta:g}", *(f"{runs[mu, eta].result('angle_zhou_2002'):.1f}" for mu in FRICTIONS)]
+            for eta in ROLLING if eta > 0]
+    lines += generated.table(["rolling resistance", *(f"friction {mu:g}" for mu in FRICTIONS)], rows)
+    lines += ["## Checks at friction 0.5 and rolling resistance 0.1", ""]
+    keys = [(MIDDLE["friction"], MIDDLE["rolling_resistance"]), *CHECKS]
+    rows = [[key if isinstance(key, str) else "the point itself", angle_of(runs[key]),
+             f"{runs[key].result('angle_zhou_2002'):.1f}", f"{1e3 * runs[key].result('heap_height'):.0f}",
+             runs[key].result("grains_left"), f"{runs[key].result('kinetic_over_fall_energy'):.1g}",
+             f"{runs[key].summary['wall_time']['total']:.0f}"] for key in keys]
+    return lines + generated.table(["run", "angle, deg", "Zhou and others", "height, mm", "grains left",
+                                    "kinetic energy over a fall's", "wall time, s"], rows)
+
+
+def zhou_reach(runs):
+    """The rolling resistance that is 0.1 mm with these grains."""
+    run = next(iter(runs.values()))
+    return 1e-4 / (0.5 * (run.parameter("radius_min") + run.parameter("radius_max")))
+
+
+def tube_lines(runs):
+    """Table of the tubes, as lines of Markdown."""
+    rows = [[f"{1e3 * a:g}", f"{f:g}" if a else "-", f"{run.result('peak_acceleration'):.2f}",
+             f"{1e3 * run.result('tube_mass_by_gravity'):.2f}", f"{1e3 * run.result('tube_mass'):.2f}",
+             f"{100 * run.result('tube_fill'):.0f}", f"{1e3 * run.result('inflow_rate'):.2f}",
+             f"{run.summary['wall_time']['total']:.0f}"] for (a, f), run in runs.items()]
+    return ["## Sand in the tube after half a second of vibration", "", *generated.table(
+        ["amplitude, mm", "frequency, Hz", "peak acceleration, g", "by gravity, g", "at the end, g", "of the tube, %",
+         "inflow, g/s", "wall time, s"], rows)]
+
+
+def draw(heaps, tubes):
+    """Angle over friction, and mass over time."""
+    figure, (left, right) = plots.canvas(12, 4.6, 1, 2)
+    for eta, colour in zip(ROLLING, palette.OTHER_LINES):
+        runs = [heaps[mu, eta] for mu in FRICTIONS]
+        left.errorbar(FRICTIONS, [run.result("angle_of_repose") for run in runs], color=colour, marker="o", capsize=3,
+                      yerr=[run.result("angle_of_repose_standard_error") for run in runs],
+                      label=f"rolling resistance {eta:g}")
+        if eta > 0:
+            left.plot(FRICTIONS, [run.result("angle_zhou_2002") for run in runs], color=colour, linestyle=":")
+    left.plot([0, 0.8], [0, math.degrees(math.atan(0.8))], color=palette.GUIDE, linewidth=1, label="friction angle")
+    left.set(xlabel="friction", ylabel="angle of repose / deg", xlim=(0, 0.85), ylim=(0, None),
+             title="dotted: the relation of Zhou and others (2002)")
+    left.legend(loc="lower right", fontsize=9)
+    for ((a, f), run), colour in zip(tubes.items(), palette.OTHER_LINES):
+        right.plot(run.column("time"), 1e3 * run.column("tube_mass"), color=colour,
+                   label=f"{1e3 * a:g} mm, {f:g} Hz: {run.result('peak_acceleration'):.1f} g" if a else "no vibration")
+    right.set(xlabel="time / s", ylabel="sand in the tube / g", xlim=(0, None), ylim=(0, None),
+              title="vibration begins at 0.25 s")
+    right.legend(fontsize=9)
+    return figure
+
+
+def main(folder):
+    """Run what is not there yet, and write the page. -> exit code."""
+    folder.mkdir(parents=True, exist_ok=True)
+    with Runs(folder, at_once=1, keep=True) as runs:
+        heaps = {key: runs.start(f"heap_{folder_of(key)}", HEAP, **values) for key, values in heap_values().items()}
+        tubes = {key: runs.start(f"tube_{folder_of(key)}", TUBE, **values) for key, values in tube_values().items()}
+        if wait_for(heaps, heap_words) | wait_for(tubes, tube_words):
+            return 1
+    heaps, tubes = ({key: job.result() for key, job in jobs.items()} for jobs in (heaps, tubes))
+    draw(heaps, tubes).savefig(folder / "granular.png", dpi=110)
+    generated.record(folder / "granular.png")
+    print(generated.write_page(folder / "granular.md", heap_lines(heaps) + tube_lines(tubes)))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(Path(sys.argv[1])))
