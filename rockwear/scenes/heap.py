@@ -16,6 +16,8 @@ SOLID = 0.57
 """Part of the box that settled spheres fill, for the size of the plate."""
 HEADROOM = 2.3**3 / (4 / 3 * math.pi / SOLID)
 """Height of the grains before they settle over that after."""
+CUT_OFF = 0.95
+"""Part of the height of the fill from which a crest may be the fill's own surface."""
 
 GROUPS = [
     GRAINS,
@@ -47,6 +49,11 @@ def plate(v):
     opening = v.opening * d
     # 2 (L + opening) fill_ratio L = area
     return 0.5 * (math.sqrt(opening**2 + 2 * area / v.fill_ratio) - opening)
+
+
+def crest_of(heights):
+    """Height (m) of the crest in a surface (k, strips) m: the largest mean over the strips; 0 without a grain."""
+    return max((float(np.nanmean(row)) for row in heights if np.isfinite(row).any()), default=0.0)
 
 
 class Heap(Granular):
@@ -86,7 +93,7 @@ class Heap(Granular):
         positions, left = self.positions()
         x, heights = repose.surface(positions, self.grains.radii[left], half_length=self.box.half_length,
                                     half_depth=0.5 * self.box.depth, cell=self.cell)
-        return x, heights, repose.flanks(x, heights)
+        return x, heights, repose.flanks(x, heights, self.box.half_length)
 
 
 class HeapOutput(GranularOutput):
@@ -103,16 +110,15 @@ class HeapOutput(GranularOutput):
         """{name: (value, unit)}: the angle with its standard error over flanks and strips, and what goes with it."""
         scene, v = self.scene, self.scene.v
         x, heights, flanks = scene.heap()
-        mean, error = (math.degrees(value) for value in repose.angle(flanks[:, 1]))
-        sides = [math.degrees(repose.angle(flanks[flanks[:, 0] == side, 1])[0]) for side in (-1, 1)]
-        crest = max((float(np.nanmean(row)) for row in heights if np.isfinite(row).any()), default=0.0)
+        mean, error = (math.degrees(value) for value in repose.angle(flanks))
+        sides = [math.degrees(repose.angle(flanks[flanks[:, 0] == side])[0]) for side in (-1, 1)]
         mean_radius = 0.5 * (v.radius_min + v.radius_max)
         zhou = repose.zhou(friction=v.friction, wall_friction=v.wall_friction,
                            rolling=v.rolling_resistance * mean_radius,
                            wall_rolling=1.5 * v.rolling_resistance * mean_radius, diameter=2 * mean_radius)
         found = {"angle_of_repose": (mean, "deg"), "angle_of_repose_standard_error": (error, "deg"),
                  "angle_left": (sides[0], "deg"), "angle_right": (sides[1], "deg"), "flanks": (len(flanks), "-"),
-                 "heap_height": (crest, "m"), "plate_half_length": (scene.box.half_length, "m"),
+                 "heap_height": (crest_of(heights), "m"), "plate_half_length": (scene.box.half_length, "m"),
                  "mass_on_plate": (float(scene.grains.masses.sum()) - scene.outflow.mass, "kg"),
                  "grains_left": (scene.grains.count - scene.outflow.erased, "-")}
         if v.rolling_resistance > 0:
@@ -124,19 +130,13 @@ class HeapOutput(GranularOutput):
         if scene.finished and self.rest() > AT_REST:
             found.append(f"the heap is not at rest: its kinetic energy is {self.rest():.2g} of that of a fall by a "
                          "diameter; a longer draining lets it come to rest")
-        x, heights, flanks = scene.heap()
+        _, heights, flanks = scene.heap()
         if not len(flanks):
             found.append("no flank of the heap is long enough to have a slope: use more particles")
-        over_plate = heights[np.abs(x) < 0.15 * scene.box.half_length]
-        crest = float(np.nanmax(heights)) if np.isfinite(heights).any() else 0.0
-        if scene.stage > 0 and np.isfinite(over_plate).any() and self._cut_off(x, heights, flanks, crest):
-            found.append("the heap is cut off at the height of the fill: a larger fill_ratio lets it have its crest")
+        if scene.stage > 0 and crest_of(heights) > CUT_OFF * scene.v.fill_ratio * scene.box.half_length:
+            found.append("the heap is as high as the fill was, and may be cut off: a larger fill_ratio lets it have its "
+                         "crest")
         return found
-
-    @staticmethod
-    def _cut_off(x, heights, flanks, crest):
-        """Whether the flanks' lines meet more than a third above the crest."""
-        return len(flanks) > 0 and float(flanks[:, 2].mean()) > 1.33 * crest
 
     def model(self):
         box = self.scene.box

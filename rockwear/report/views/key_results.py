@@ -12,7 +12,8 @@ from rockwear.report.page import Section, duration, number, percent, quantity, t
 
 def key_results(run):
     """Section of the numbers."""
-    makers = (force_tiles, wear_tiles, heat_tiles, strength_tiles, sliding_tiles, error_tiles, model_tiles, cost_tiles)
+    makers = (force_tiles, wear_tiles, heat_tiles, strength_tiles, sliding_tiles, granular_tiles, error_tiles, model_tiles,
+              cost_tiles)
     shown = [tile for make in makers for tile in make(run) if tile]
     return Section("Key results", summary_line(run), [tiles(shown)])
 
@@ -145,6 +146,18 @@ def sliding_tiles(run):
             ("particles removed", f"{run.result('particles_removed')} of {run.result('tool_particles')}", "")]
 
 
+def granular_tiles(run):
+    """Heap and tube of loose grains."""
+    filled, gravity = run.result("tube_fill"), run.result("tube_fill_by_gravity")
+    known = run.result("angle_zhou_2002")
+    remark = f"Zhou and others (2002): {number(known)} deg" if math.isfinite(known) else ""
+    return [result(run, "angle of repose", "angle_of_repose", remark), result(run, "heap height", "heap_height"),
+            result(run, "sand in the tube", "tube_mass"),
+            tile(filled, "of the tube", percent(filled, 1.0), f"by gravity alone {percent(gravity, 1.0)}"),
+            result(run, "inflow", "inflow_rate", "mean while it vibrates"),
+            result(run, "peak acceleration", "peak_acceleration")]
+
+
 def error_tiles(run):
     """Largest errors of the heat benchmarks, by packing."""
     def worst(packing, kind):
@@ -160,12 +173,13 @@ def model_tiles(run):
     """Size of the model, time step, and what the energy balance misses."""
     pieces = {"rock": "rock_particles", "tool": "tool_particles", "facets of the tool": "facets"}
     count = {label: run.result(name) for label, name in pieces.items() if math.isfinite(run.result(name))}
-    step, energy = run.result("time_step"), run.balances.get("energy", {})
+    step, critical, energy = (run.result("time_step"), run.result("critical_time_step"),
+                              run.balances.get("energy", {}))
     work = work_entry(energy)
     missed = percent(energy.get("residual", math.nan), energy.get(work, 0.0))
     return [tile(run.result("rock_particles"), "particles", " + ".join(map(number, count.values())), " + ".join(count)),
             tile(step, "time step", f"{number(1e9 * step)} ns" if step < 1e-6 else f"{number(1e6 * step)} µs",
-                 f"{percent(step, run.result('critical_time_step'))} of the critical"),
+                 f"{percent(step, critical)} of the critical" if math.isfinite(critical) else ""),
             ("energy residual", missed, f"of the {words(work)}") if work else None]
 
 
