@@ -44,13 +44,13 @@ def poured(*, low, high, count, radius_min, radius_max, density, seed, floor=0.0
     require(room.min() >= 0, "radius_max", radius_max, f"at most {0.5 * min(np.subtract(high, low)):g}, for a sphere to "
             "fit between the walls", "m")
     columns = [max(1, int(width / (SPACING * radius_max)) + 1) for width in room]
-    steps = [0.0 if n == 1 else width / (n - 1) for n, width in zip(columns, room)]
     rng = np.random.default_rng([seed, count])
     k = np.arange(count)
     layer, place = np.divmod(k, columns[0] * columns[1])
     across = np.column_stack(np.divmod(place, columns[1]))
-    x, z = (low[axis] + radius_max + (steps[axis] * across[:, axis] if columns[axis] > 1 else 0.5 * room[axis])
-            for axis in (0, 1))
+    # A single column stands in the middle.
+    x, z = (start + radius_max + width * (index / (n - 1) if n > 1 else 0.5 + 0.0 * index)
+            for start, width, n, index in zip(low, room, columns, across.T))
     off = JITTER * radius_max * rng.uniform(-1, 1, (count, 3))
     places = np.column_stack([x, floor + radius_max * (1 + JITTER + SPACING * layer), z]) + off
     places[:, 0] = np.clip(places[:, 0], low[0] + radius_max, high[0] - radius_max)

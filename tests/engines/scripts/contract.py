@@ -32,14 +32,17 @@ from rockwear.engines.facet_contact import FacetContact
 from rockwear.engines.facet_wear import FacetWear
 from rockwear.engines.failure import Failure
 from rockwear.engines.heat import Heat
+from rockwear.engines.outflow import Outflow
 from rockwear.engines.path_follower import PathFollower
 from rockwear.engines.platens import Platens
 from rockwear.engines.recorder import Recorder
+from rockwear.engines.rest import Rest
 from rockwear.engines.rock_friction import RockFriction, YadeFriction
 from rockwear.engines.separation import Separation
 from rockwear.engines.shear_rotation import ShearRotation
 from rockwear.engines.tool_contact import ToolContact
 from rockwear.engines.velocity_increment import VelocityIncrement
+from rockwear.engines.vibration import Vibration
 from rockwear.engines.wear import Wear
 from rockwear.engines.wear_profile import WearProfile
 from rockwear.kernels.archard import Hardness
@@ -54,10 +57,11 @@ from rockwear.kernels.voronoi import cells
 from rockwear.kernels.wear_laws import DissipationArchard, PressureArchard
 from rockwear.model.contact import ContactLaw
 from rockwear.model.facet_tool import FacetTool
+from rockwear.model.granular import TubeBox, poured
 from rockwear.model.rock import Arranged
 from rockwear.model.thermal_body import ParticleBody
 from rockwear.run import checkpoint
-from rockwear.scenes import yade_scene
+from rockwear.scenes import granular, yade_scene
 from rockwear.scenes.scene import Scene
 from rockwear.scenes.tool_bodies import FacetBodies, ToolBodies
 
@@ -447,7 +451,34 @@ class HeatAlone(World):
         """Nothing of YADE's to prepare."""
 
 
-WORLDS = (ParticleCut, FacetCut, Sliding, Tension, Confined, Absorbing, NowhereLinear, Softening, Spinning, HeatAlone)
+class Pouring(granular.Granular):
+    """Grains are thrown on the floor of a box that vibrates; some fall out on their way, which counts as rest."""
+
+    def __init__(self):
+        v = {p.name: p.default for group in (granular.GRAINS, granular.ACCURACY) for p in group.parameters}
+        v.update(gravity=2000.0, particles=30)
+        box = TubeBox(width=0.022, depth=0.022, height=0.2, diameter=0.012, length=0.02, axis=0.01)
+        low, high = box.inside
+        grains = poured(low=low, high=high, count=v["particles"], radius_min=v["radius_min"],
+                        radius_max=v["radius_max"], density=v["density"], seed=1)
+        self.output = SimpleNamespace(log=lambda: self.contacts.log())
+        super().__init__(v, grains=grains, walls=box.walls, stages={"settling": 1.0})
+
+    def own_engines(self):
+        return [Vibration(amplitude=1e-3, frequency=400.0, direction=(0.6, 0.8, 0.0), gravity=2000.0, period=4,
+                          clock=lambda: self.time),
+                Outflow(bodies=self.ids, below=2.3e-3, period=7), Rest(limit=1e9, watching=lambda: True, period=31)]
+
+    def advance(self, steps):
+        base.run(steps)
+        self.canonical()
+
+    def event(self, last):
+        """Nothing happens."""
+
+
+WORLDS = (ParticleCut, FacetCut, Sliding, Tension, Confined, Absorbing, NowhereLinear, Softening, Spinning, HeatAlone,
+          Pouring)
 
 
 def concrete_engines():
