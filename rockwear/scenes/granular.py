@@ -92,8 +92,6 @@ class Granular(Scene):
     def build(self):
         """Fill YADE's scene: walls, grains, loop, engines."""
         O.reset()
-        # Else bodies that are erased later would be unknown to a collider that is made afterwards.
-        O.bodies.enableRedirection = False
         O.trackEnergy = True
         v = self.v
         for label, friction in (("grain", v.friction), ("wall", v.wall_friction)):
@@ -140,8 +138,23 @@ class Granular(Scene):
         return []
 
     def canonical(self):
+        """The state that a saved and loaded scene has, by saving and loading it: YADE's contacts hold on to the law
+        that they have met first, and with it to sums that no file keeps."""
         self._refresh_bounds()
         self.contacts.act()
+        O.saveTmp(quiet=True)
+        O.loadTmp(quiet=True)
+        self._find_yade()
+
+    def _connect(self):
+        super()._connect()
+        self._find_yade()
+
+    def _find_yade(self):
+        # Else bodies that are erased later would be unknown to a collider that is made afterwards.
+        O.bodies.enableRedirection = False
+        for engine in self.engines:
+            engine.connect()
 
     def end_stage(self, folder):
         """On to the next stage; after settling the gates go."""
