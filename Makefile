@@ -10,7 +10,8 @@ TO_LINT := python3-flake8
 
 .DEFAULT_GOAL := help
 .PHONY: help setup setup-sweep setup-test run test test-kernels validate bench campaigns campaign-wear \
-        campaign-uniaxial campaign-grains campaign-rocks campaign-steady lint clean
+        campaign-uniaxial campaign-grains campaign-rocks campaign-steady campaign-granular \
+        lint clean
 
 # $(call install,packages,modules): the missing packages, where there is apt-get; then each module must be found.
 define install
@@ -81,6 +82,9 @@ campaign-rocks: setup-sweep ## what bond laws and rock properties do to a rock, 
 
 campaign-steady: setup-sweep ## what makes a steady cut what it is, one cause at a time (hours; resumes)
 	$(PYTHON) -m calibration.campaigns.steady_cut $(OUT)/campaign-steady $(WHERE)
+
+campaign-granular: setup-sweep ## angle of repose and vibrated tube (an hour; resumes)
+	$(PYTHON) -m calibration.campaigns.granular $(OUT)/campaign-granular $(WHERE)
 
 lint: ## check the code with flake8
 	$(call install,$(TO_LINT),flake8)

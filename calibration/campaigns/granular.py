@@ -1,16 +1,16 @@
 """Granular flow [Rojek 2003, ch. 14]: the angle of repose over friction and rolling resistance, and sand that flows
 into a tube over amplitude and frequency.
 
-    python3 -m calibration.campaigns.granular DIR
+    python3 -m calibration.campaigns.granular DIR [--jobs N | --scheduler ADDRESS]
 
-Runs that finished are kept, one run at a time. Writes granular.md, granular.png and provenance.json into DIR.
+Runs that finished are kept. Writes granular.md, granular.png and provenance.json into DIR.
 """
 import math
 import sys
 from pathlib import Path
 
 from calibration import generated
-from calibration.campaigns.runs import Runs, wait_for
+from calibration.campaigns.runs import PLACEMENT, Runs, placement, wait_for
 from rockwear.report import palette, plots
 
 HEAP, TUBE = "yade_scripts/angle_of_repose.py", "yade_scripts/vibrated_tube.py"
@@ -64,7 +64,7 @@ def heap_lines(runs):
     rows = [[f"{eta:g}", *(angle_of(runs[mu, eta]) for mu in FRICTIONS)] for eta in ROLLING]
     lines = ["## Angle of repose, degrees, over friction and rolling resistance", "",
              *generated.table(["rolling resistance", *(f"friction {mu:g}" for mu in FRICTIONS)], rows)]
-    lines += [f"The relation of Zhou, Xu, Yu and Zulli (2002) for the same numbers; it was made for rolling resistances "
+    lines += ["The relation of Zhou, Xu, Yu and Zulli (2002) for the same numbers; it was made for rolling resistances "
               f"up to about {zhou_reach(runs):.2f} in this measure.", ""]
     rows = [[f"{eta:g}", *(f"{runs[mu, eta].result('angle_zhou_2002'):.1f}" for mu in FRICTIONS)]
             for eta in ROLLING if eta > 0]
@@ -119,10 +119,10 @@ def draw(heaps, tubes):
     return figure
 
 
-def main(folder):
+def main(folder, **where):
     """Run what is not there yet, and write the page. -> exit code."""
     folder.mkdir(parents=True, exist_ok=True)
-    with Runs(folder, at_once=1, keep=True) as runs:
+    with Runs(folder, keep=True, **where) as runs:
         heaps = {key: runs.start(f"heap_{folder_of(key)}", HEAP, **values) for key, values in heap_values().items()}
         tubes = {key: runs.start(f"tube_{folder_of(key)}", TUBE, **values) for key, values in tube_values().items()}
         if wait_for(heaps, heap_words) | wait_for(tubes, tube_words):
@@ -135,4 +135,7 @@ def main(folder):
 
 
 if __name__ == "__main__":
-    sys.exit(main(Path(sys.argv[1])))
+    place, words = placement(sys.argv[1:])
+    if len(words) != 1:
+        sys.exit(f"usage: python3 -m calibration.campaigns.granular DIR {PLACEMENT}")
+    sys.exit(main(Path(words[0]), **place))

@@ -23,8 +23,8 @@ def surface(positions, radii, *, half_length, half_depth, cell):
     m; nan where nothing lies).
     """
     columns, strips = (FINE * max(1, round(2 * half / cell)) for half in (half_length, half_depth))
-    x, z = (half * ((2 * np.arange(count) + 1) / count - 1) for half, count in ((half_length, columns),
-                                                                              (half_depth, strips)))
+    x, z = (half * ((2 * np.arange(count) + 1) / count - 1)
+            for half, count in ((half_length, columns), (half_depth, strips)))
     seen = np.full((columns, strips), -math.inf)
     for (px, py, pz), r in zip(positions[positions[:, 1] > 0].tolist(), radii[positions[:, 1] > 0].tolist()):
         i, k = (slice(*np.searchsorted(points, (place - r, place + r))) for points, place in ((x, px), (z, pz)))

@@ -37,12 +37,12 @@ class Grains:
 def poured(*, low, high, count, radius_min, radius_max, density, seed, floor=0.0):
     """Grains that do not touch, layer by layer from the floor of a box upwards, to settle under gravity.
 
-    low, high: (x, z) m, corners of the box; floor: m, its height; count: spheres; radii (m) are uniform between the two; seed: of radii and
-    places. Raises ParameterError where not even one sphere fits between the walls.
+    low, high: (x, z) m, corners of the box; floor: m, its height; count: spheres; radii (m) are uniform between the
+    two; seed: of radii and places. Raises ParameterError where not even one sphere fits between the walls.
     """
     room = np.subtract(high, low) - 2 * radius_max
-    require(room.min() >= 0, "radius_max", radius_max, f"at most {0.5 * min(np.subtract(high, low)):g}, for a sphere to "
-            "fit between the walls", "m")
+    require(room.min() >= 0, "radius_max", radius_max,
+            f"at most {0.5 * min(np.subtract(high, low)):g}, for a sphere to fit between the walls", "m")
     columns = [max(1, int(width / (SPACING * radius_max)) + 1) for width in room]
     rng = np.random.default_rng([seed, count])
     k = np.arange(count)
@@ -108,8 +108,8 @@ class TubeBox:
         self.diameter, self.length, self.axis = diameter, length, axis
         z = 0.5 * depth
         floor_and_sides = [
-            rectangle((-width, 0, -z), (width, 0, 0), (0, 0, depth)), rectangle((-width, 0, -z), (0, height, 0),
-                                                                               (0, 0, depth)),
+            rectangle((-width, 0, -z), (width, 0, 0), (0, 0, depth)),
+            rectangle((-width, 0, -z), (0, height, 0), (0, 0, depth)),
             *(rectangle((-width, 0, side), (width, 0, 0), (0, height, 0)) for side in (-z, z))]
         angles = 2 * math.pi * (np.arange(sides) + 0.5) / sides
         rim = 0.5 * diameter / math.cos(math.pi / sides) * np.column_stack([np.sin(angles), np.cos(angles)])

@@ -1,5 +1,6 @@
 """The one page of all scenes: its views in order. Each says by itself whether a run has what it shows."""
-from rockwear.report.views import granular, heat_profiles, speeds, space, stress_strain, temperature, turns, wear_spheres
+from rockwear.report.views import (
+    granular, heat_profiles, speeds, space, stress_strain, temperature, turns, wear_spheres)
 from rockwear.report.views.balances import balances
 from rockwear.report.views.cut import cut
 from rockwear.report.views.density import density
@@ -21,7 +22,8 @@ from rockwear.report.views.wear_triangles import wear_triangles
 
 VIEWS = (
     key_results, steady_cut, stages, turns.turn_by_turn, two_disc_results, two_disc,
-    granular.heap, granular.tube, heat_profiles.errors, heat_profiles.profiles, heat_profiles.convergence, heat_profiles.fields,
+    granular.heap, granular.tube,
+    heat_profiles.errors, heat_profiles.profiles, heat_profiles.convergence, heat_profiles.fields,
     stress_strain.stress_strain, load_displacement, stress_strain.failure, worn_block,
     speeds.speed_tables, speeds.tip_over_time, speeds.fields, speeds.near_the_tip,
     set_up, cut, space.perspective, space.side, density, forces, history,

@@ -210,8 +210,8 @@ class GranularOutput(Output):
                 "rayleigh_time": (scene.rayleigh, "s")}
 
     def balances(self):
-        """Energy: what gravity (and vibration) did, and where it is. YADE does not count the work of rolling resistance:
-        with it, `rolling` is what the other entries leave, and no residual can be told."""
+        """Energy: what gravity (and vibration) did, and where it is. YADE does not count the work of rolling
+        resistance: with it, `rolling` is what the other entries leave, and no residual can be told."""
         scene = self.scene
         balance = {"gravity_work": scene.gravity_work(), **scene.stored_energy(),
                    "friction": scene.contacts.friction_work, "contact_damping": scene.contacts.damping_work,

@@ -134,8 +134,8 @@ class HeapOutput(GranularOutput):
         if not len(flanks):
             found.append("no flank of the heap is long enough to have a slope: use more particles")
         if scene.stage > 0 and crest_of(heights) > CUT_OFF * scene.v.fill_ratio * scene.box.half_length:
-            found.append("the heap is as high as the fill was, and may be cut off: a larger fill_ratio lets it have its "
-                         "crest")
+            found.append("the heap is as high as the fill was, and may be cut off: a larger fill_ratio lets it have "
+                         "its crest; or grains have jammed in an opening that is too narrow")
         return found
 
     def model(self):

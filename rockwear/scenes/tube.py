@@ -27,8 +27,8 @@ GROUPS = with_defaults([
         Parameter("tube_axis", 0.014, "m", above_zero, "height of the tube's axis over the floor of the box"))),
     Group("motion", (
         SETTLING,
-        Parameter("amplitude", 2e-4, "m", number(0), "of the vibration; 0.2 mm at 50 Hz are 2 g, as flasks of lost foam "
-                  "casting are vibrated with; 0: what gravity alone does"),
+        Parameter("amplitude", 2e-4, "m", number(0), "of the vibration; 0.2 mm at 50 Hz are 2 g, as flasks of lost "
+                  "foam casting are vibrated with; 0: what gravity alone does"),
         Parameter("frequency", 50.0, "Hz", above_zero, "of the vibration"),
         Parameter("direction", "vertical", "", choice(*DIRECTIONS), "of the vibration; along: the tube's axis"),
         Parameter("vibrating", 1.0, "s", duration, "time of vibration after the settling"))),
@@ -107,7 +107,7 @@ class TubeOutput(GranularOutput):
         return {**super().log(), "tube_mass": (self.scene.tube_mass(), "kg")}
 
     def results(self):
-        """{name: (value, unit)}: masses in the tube, and the mean rate at which sand flows in while the box vibrates."""
+        """{name: (value, unit)}: masses in the tube, and the mean rate of inflow while the box vibrates."""
         scene, columns = self.scene, self.scene.recorder.columns()
         mass, time, stage = (columns.get(name, np.zeros(0)) for name in ("tube_mass", "time", "stage"))
         now, at_first = scene.tube_mass(), float(mass[stage == 0][-1]) if (stage == 0).any() else 0.0

@@ -5,7 +5,7 @@ import pytest
 
 from calibration.benchmarks import __main__ as bench
 from calibration.benchmarks import loading_speed, particle_size
-from calibration.campaigns import sharp_and_worn, steady_cut, tip_temperature, uniaxial, wear
+from calibration.campaigns import granular, sharp_and_worn, steady_cut, tip_temperature, uniaxial, wear
 from calibration.campaigns.runs import RunFailed, Runs, finished
 from calibration.fitting import rock_fit
 from calibration.fitting.rock_unknowns import Micro
@@ -33,6 +33,8 @@ def started():
     yield from ((uniaxial.SCRIPT, {**uniaxial.SMALL, **values, "speed": loading_speed.SPEEDS[0]})
                 for values in uniaxial.ROCKS.values())
     yield from steady_cut.plan(steady_cut.CASES).values()
+    yield from ((granular.HEAP, values) for values in granular.heap_values().values())
+    yield from ((granular.TUBE, values) for values in granular.tube_values().values())
     for script, values, _ in tip_temperature.SCENES.values():
         yield from ((script, {**values, **tip_temperature.QUICK, **change})
                     for choices in tip_temperature.OPEN.values() for change in choices.values())

@@ -23,8 +23,8 @@ def tube(run):
     """Section of the vibrated tube."""
     if not run.has("tube", "box", "grain_positions"):
         return None
-    return Section("The tube", "Above: mass of the sand in the tube over time, beside that of a tube that is full (to a "
-                   "solid fraction of 0.6). Below: box and tube from the side, the nearer half taken away; coloured by "
+    return Section("The tube", "Above: mass of the sand in the tube over time, beside that of a full tube (to a solid "
+                   "fraction of 0.6). Below: box and tube from the side, the nearer half taken away; coloured by "
                    "where the grains were when the vibration began, from the floor (pale) upwards.",
                    [save(run, "tube_mass", mass(run)), save(run, "tube", course_of_tube(run))])
 

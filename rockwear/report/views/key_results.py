@@ -12,8 +12,8 @@ from rockwear.report.page import Section, duration, number, percent, quantity, t
 
 def key_results(run):
     """Section of the numbers."""
-    makers = (force_tiles, wear_tiles, heat_tiles, strength_tiles, sliding_tiles, granular_tiles, error_tiles, model_tiles,
-              cost_tiles)
+    makers = (force_tiles, wear_tiles, heat_tiles, strength_tiles, sliding_tiles, granular_tiles, error_tiles,
+              model_tiles, cost_tiles)
     shown = [tile for make in makers for tile in make(run) if tile]
     return Section("Key results", summary_line(run), [tiles(shown)])
 
