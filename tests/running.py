@@ -1,10 +1,12 @@
 """Scenes are run as a user runs them: YADE in a process of its own, judged by exit code, words and numbers."""
+import base64
 import json
 import os
 import subprocess
 import time
 from pathlib import Path
 from types import SimpleNamespace
+from xml.etree import ElementTree
 
 import numpy as np
 
@@ -84,10 +86,11 @@ def last_snapshot(out):
 
 
 def vtk_field(file, name):
-    """(n,) a field of a VTK file of ours."""
-    lines = file.read_text(encoding="utf-8").splitlines()
-    count, first = int(lines[4].split()[1]), lines.index(f"SCALARS {name} double 1") + 2
-    return np.array(lines[first:first + count], float)
+    """(n,) a field of numbers of a VTK file of ours."""
+    array, = (found for found in ElementTree.parse(file).iter("DataArray") if found.get("Name") == name)
+    data = base64.b64decode(array.text)
+    assert int.from_bytes(data[:8], "little") == len(data) - 8
+    return np.frombuffer(data[8:], array.get("type").lower())
 
 
 def assert_density_is_shown(out, ratio, bulk):
@@ -101,7 +104,7 @@ def assert_density_is_shown(out, ratio, bulk):
     assert np.array_equal(np.isfinite(density), there) and there.sum() > 100
     assert 0.7 * bulk < np.median(density[there]) < 1.1 * bulk and density[there].min() < 0.7 * bulk
     assert np.corrcoef(density[there], fraction)[0, 1] > 0.98
-    files = sorted((out / "vtk").glob("rock.*.vtk"))
+    files = sorted((out / "vtk").glob("rock.*.vtp"))
     if files:
         np.testing.assert_allclose(vtk_field(files[-1], "density"), density[there], rtol=1e-8)
 

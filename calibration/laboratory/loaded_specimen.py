@@ -319,9 +319,9 @@ class SpecimenOutput(Output):
                 **density_map(self.scene.rock, access.rock_positions(self.scene.rock), self.scene.v.control_radius)}
 
     def write_vtk(self, folder, number):
-        """rock.NNNN.vtk: diameter, broken bonds, displacement, density."""
+        """rock.NNNN.vtp: diameter, broken bonds, displacement, density."""
         shot = self.snapshot()
-        vtk.write(folder / f"rock.{number:04d}.vtk", shot["rock_positions"],
+        vtk.write(folder, "rock", number, self.scene.time, shot["rock_positions"],
                   {"diameter": 2 * self.scene.rock.radii, "broken_bonds": shot["broken_bonds"],
                    **{name: shot[name] for name in ("density",) if name in shot},
                    **{f"displacement_{axis}": moved for axis, moved in zip("xyz", shot["displacement"].T)}})

@@ -268,9 +268,9 @@ class SlidingWearOutput(Output):
                 "alive": erosion.alive, "worn_depth": erosion.stored / (2 * self.scene.tool.radii)}
 
     def write_vtk(self, folder, number):
-        """tool.NNNN.vtk: diameter, worn depth."""
+        """tool.NNNN.vtp: diameter, worn depth."""
         shot, alive = self.snapshot(), self.scene.tool.erosion.alive
-        vtk.write(folder / f"tool.{number:04d}.vtk", self.scene.tool.positions[alive] + shot["offset"],
+        vtk.write(folder, "tool", number, self.scene.time, self.scene.tool.positions[alive] + shot["offset"],
                   {"diameter": 2 * self.scene.tool.radii[alive], "worn_depth": shot["worn_depth"][alive]})
 
     def progress(self):

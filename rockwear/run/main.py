@@ -8,16 +8,18 @@ import shutil
 import signal
 import sys
 import time
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
 import yade
 
 from rockwear import __version__, report
-from rockwear.run import checkpoint, lock, parameters, servers
+from rockwear.run import checkpoint, lock, parameters, servers, vtk
 from rockwear.engines.base import RunEnded
-from rockwear.engines.recorder import write_table
+from rockwear.engines.history import write_table
 from rockwear.kernels.checks import ParameterError, require
+from rockwear.kernels.files import naming, replacing
 from rockwear.kernels.parameter import Group, Parameter, above_zero, file, flag, text
 
 COMMON = Group("output", (
@@ -32,6 +34,8 @@ FOLDERS = "snapshots", "checkpoint", "figures", "vtk"
 """Folders that a new run empties."""
 FILES = "summary.json", "history.csv", "cracks.csv", "turns.csv", "wear_profile.csv", "tool.stl", "report.html"
 """Files that a new run removes."""
+HISTORY = "history.f8"
+"""In the folder checkpoint: the rows of history.csv, 8 bytes a number; a checkpoint says how many of them count."""
 MOST_STEPS = 1e10
 """In all: more than a month of computing."""
 DECISIVE_UNITS = {"N/m", "kg/m3", "m", "m/s", "s"}
@@ -64,12 +68,17 @@ def main(name, declared, make_scene):
     except ParameterError as error:
         print(f"error: {error}", file=sys.stderr)
         _leave(2)
+    except OSError as error:
+        print(f"error: {error}", file=sys.stderr)
+        _leave(1)
     _leave(run.go())
 
 
 def _leave(code):
-    sys.stdout.flush()
-    sys.stderr.flush()
+    # What is said may go to a disk that is full.
+    with suppress(OSError):
+        sys.stdout.flush()
+        sys.stderr.flush()
     # YADE's threads make an ordinary exit crash now and then after all work is done.
     os._exit(code)
 
@@ -151,14 +160,26 @@ class Run:
             self.scene.restore(state["scene"], directory, self.folder)
             self.snapshots, self.next_snapshot = int(state["snapshots"]), float(state["next_snapshot"])
             self.wall_before = float(state["wall_time"])
+            self._remove_later_snapshots()
         else:
             for old in FOLDERS:
                 shutil.rmtree(self.folder / old, ignore_errors=True)
             for old in FILES:
                 (self.folder / old).unlink(missing_ok=True)
             (self.folder / "snapshots").mkdir()
-            np.savez_compressed(self.folder / "model.npz", **self.scene.output.model())
+            with replacing(self.folder / "model.npz") as file:
+                np.savez_compressed(file, **self.scene.output.model())
+        (self.folder / "checkpoint").mkdir(exist_ok=True)
+        if not self.scene.recorder.history.open(self.folder / "checkpoint" / HISTORY, self.folder / "history.csv"):
+            raise checkpoint.CheckpointError(self.folder / "checkpoint", f"whole: {HISTORY} is cut short")
         self.setup_time = time.time() - self.began
+
+    def _remove_later_snapshots(self):
+        """Those that the run made between its checkpoint and its end, and now makes again."""
+        for shot in (self.folder / "snapshots").glob("*.npz"):
+            if int(shot.stem) >= self.snapshots:
+                shot.unlink()
+        vtk.truncate(self.folder / "vtk", self.snapshots)
 
     def go(self):
         """Run to the end. -> exit code."""
@@ -184,19 +205,22 @@ class Run:
         elif ended != "finished":
             print(ended)
         try:
-            if not code:
-                self._snapshot()
-                self._checkpoint()
-            warnings = self.scene.output.warnings()
-            self._write_summary(ended, code, warnings)
-            self.scene.output.write_shape(self.folder)
-            for line in warnings:
-                print(f"warning: {line}", file=sys.stderr)
-            if not code and self.values["report"]:
-                report.write(self.folder)
-                print(f"report: {self.folder / 'report.html'}")
+            with naming(self.folder):
+                if not code:
+                    self._snapshot()
+                    self._checkpoint()
+                warnings = self.scene.output.warnings()
+                self._write_summary(ended, code, warnings)
+                self.scene.output.write_shape(self.folder)
+                for line in warnings:
+                    print(f"warning: {line}", file=sys.stderr)
+                if not code and self.values["report"]:
+                    report.write(self.folder)
+                    print(f"report: {self.folder / 'report.html'}")
         except OSError as error:
-            print(f"error: {error}", file=sys.stderr)
+            # Of a disk that was full before it has been said.
+            if not code:
+                print(f"error: {error}", file=sys.stderr)
             return 1
         return code
 
@@ -222,7 +246,6 @@ class Run:
             now = time.time()
             if self.stopped_by or now - last_checkpoint > self.values["checkpoint_interval"]:
                 self._checkpoint()
-                self.scene.recorder.write(self.folder / "history.csv")
                 last_checkpoint = time.time()
             if self.stopped_by:
                 return
@@ -245,8 +268,8 @@ class Run:
         print(f"\r{line}\033[K" if terminal else line, end="" if terminal else "\n", flush=True)
 
     def _snapshot(self):
-        arrays = self.scene.output.snapshot()
-        np.savez_compressed(self.folder / "snapshots" / f"{self.snapshots:04d}.npz", **arrays)
+        with replacing(self.folder / "snapshots" / f"{self.snapshots:04d}.npz") as file:
+            np.savez_compressed(file, **self.scene.output.snapshot())
         if self.values["vtk"]:
             self.scene.output.write_vtk(self.folder / "vtk", self.snapshots)
         self.snapshots += 1
@@ -257,13 +280,13 @@ class Run:
         begin = time.time()
         state = {"scene": self.scene.state(), "snapshots": self.snapshots, "next_snapshot": self.next_snapshot,
                  "wall_time": self.wall_before + time.time() - self.began}
-        checkpoint.save(self.folder / "checkpoint", identity=self.identity, state=state,
-                        write_scenes=lambda directory: self.scene.save(directory, self.folder))
+        with naming(self.folder / "checkpoint"):
+            checkpoint.save(self.folder / "checkpoint", identity=self.identity, state=state,
+                            write_scenes=lambda directory: self.scene.save(directory, self.folder))
         self.checkpoint_time += time.time() - begin
 
     def _write_summary(self, ended, code, warnings):
         scene = self.scene
-        scene.recorder.write(self.folder / "history.csv")
         for name, (header, rows) in scene.output.tables().items():
             write_table(self.folder / name, header, rows)
         ours = {engine.name: {"seconds": engine.wall_time, "visits": engine.visits} for engine in scene.engines}
@@ -282,9 +305,8 @@ class Run:
                           "checkpoints": self.checkpoint_time, "by_engine": ours},
             "peak_memory": {"value": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024, "unit": "bytes"},
         }
-        temporary = self.folder / "summary.json.new"
-        temporary.write_text(json.dumps(summary, indent=1, allow_nan=True), encoding="utf-8")
-        os.replace(temporary, self.folder / "summary.json")
+        with replacing(self.folder / "summary.json") as file:
+            file.write(json.dumps(summary, indent=1, allow_nan=True).encode())
 
 
 def _plain(value):

@@ -93,7 +93,7 @@ class CutOutput(Output):
                 **heat, **scene.tool.snapshot()}
 
     def write_vtk(self, folder, number):
-        """rock.NNNN.vtk and tool.NNNN.vtk: diameter, broken bonds, density, temperature; the tool's pieces, worn
+        """rock.NNNN.vtp and tool.NNNN.vtp: diameter, broken bonds, density, temperature; the tool's pieces, worn
         depth."""
         scene = self.scene
         shot, rock = self.snapshot(), scene.rock
@@ -104,10 +104,10 @@ class CutOutput(Output):
             fields["temperature"] = shot["temperature"][:rock.count]
         places, of_tool = scene.tool.points(scene.heat.temperature_of_pieces() if scene.heat else None)
         there = np.isfinite(shot["rock_positions"]).all(axis=1)
-        vtk.write(folder / f"rock.{number:04d}.vtk", shot["rock_positions"][there],
+        vtk.write(folder, "rock", number, scene.time, shot["rock_positions"][there],
                   {name: values[there] for name, values in fields.items()})
         turned = Pose(shot["tool_offset"], shot["tool_turn"]).of(places[:, :2])
-        vtk.write(folder / f"tool.{number:04d}.vtk", np.column_stack([turned, places[:, 2:]]), of_tool)
+        vtk.write(folder, "tool", number, scene.time, np.column_stack([turned, places[:, 2:]]), of_tool)
 
     def progress(self):
         scene = self.scene

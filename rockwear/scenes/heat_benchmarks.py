@@ -166,10 +166,8 @@ class HeatBenchmarks(Scene):
 
     def _make_engines(self):
         self.heat = Conduction(network=self.case.network, step=self.case.step)
-        recorder = Recorder([self.output.log], period=max(1, self.stages[self.stage][1] // 10))
-        if hasattr(self, "recorder"):
-            recorder.restore(self.recorder.state())
-        self.recorder = recorder
+        self.recorder = Recorder([self.output.log], period=max(1, self.stages[self.stage][1] // 10),
+                                 history=self.recorder.history if hasattr(self, "recorder") else None)
         self._register(self.heat, self.recorder)
 
     def _cut_open_paths(self, bonds):
@@ -280,9 +278,9 @@ class BenchmarkOutput(Output):
                 "temperature": self.scene.heat.network.temperature, "exact": self.scene.expected()}
 
     def write_vtk(self, folder, number):
-        """rock.NNNN.vtk: diameter, temperature, exact temperature."""
+        """rock.NNNN.vtp: diameter, temperature, exact temperature."""
         shot = self.snapshot()
-        vtk.write(folder / f"rock.{number:04d}.vtk", self.scene.rock.positions,
+        vtk.write(folder, "rock", number, self.scene.time, self.scene.rock.positions,
                   {"diameter": 2 * self.scene.rock.radii, "temperature": shot["temperature"], "exact": shot["exact"]})
 
     def progress(self):

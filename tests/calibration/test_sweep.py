@@ -11,6 +11,7 @@ from dataclasses import replace
 from pathlib import Path
 from unittest import mock
 
+import numpy as np
 import pytest
 
 from calibration.campaigns import runs, yade_job
@@ -56,6 +57,9 @@ def kill_worker(folder, found):
     while process_of(folder) == child and time.time() < deadline:
         time.sleep(0.01)
     found["orphan"], found["set"] = time.time() - killed, json.loads(current.read_text(encoding="utf-8"))["set"]
+    with np.load(folder / f"checkpoint/{found['set']}/state.npz") as state:
+        found["saved rows"] = int(state["scene/engines/recorder/rows"])
+    found["history"] = (folder / "history.csv").read_bytes()
 
 
 @pytest.fixture(scope="module")
@@ -85,6 +89,13 @@ def test_a_row_whose_worker_is_killed_goes_on_elsewhere_and_differs_in_no_bit(sw
     assert killed["parameters"]["resume"] and not never["parameters"]["resume"]
     assert killed["results"] == never["results"] and killed["balances"] == never["balances"]
     assert (out / "killed/history.csv").read_bytes() == (out / "never/history.csv").read_bytes()
+
+
+def test_a_killed_run_has_its_rows_so_far_on_the_disk(swept):
+    out, _, notes, _ = swept
+    assert (out / "never/history.csv").read_bytes().startswith(notes["history"])
+    # Of the chunk that was under way, too.
+    assert notes["history"].endswith(b"\n") and notes["history"].count(b"\n") > 1 + notes["saved rows"] > 100
 
 
 def test_failed_rows_are_told_apart_and_gathered_with_the_others(swept):

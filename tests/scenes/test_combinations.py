@@ -182,7 +182,7 @@ def test_rubbed_segments_are_the_hot_ones_and_wear_by_their_own_temperature(of_s
 
 
 def test_vtk_shows_temperatures_of_facets_at_their_vertices(of_segments):
-    shown = vtk_field(sorted((of_segments.out / "vtk").glob("tool.*.vtk"))[-1], "temperature")
+    shown = vtk_field(sorted((of_segments.out / "vtk").glob("tool.*.vtp"))[-1], "temperature")
     nodes = last_snapshot(of_segments.out)["temperature"]
     assert len(shown) == len(last_snapshot(of_segments.out)["tool_vertices"])
     assert shown.min() == pytest.approx(293.15, abs=0.01) and 293.2 < shown.max() <= nodes.max() + 1e-6

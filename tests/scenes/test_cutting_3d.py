@@ -86,7 +86,7 @@ def test_no_wear_without_contact_and_none_above_the_cut(worn):
 
 def test_no_heat_engine_and_files_for_paraview(worn):
     assert "heat" not in worn.summary["wall_time"]["by_engine"]
-    assert len(list((worn.out / "vtk").glob("tool.*.vtk"))) > 2
+    assert len(list((worn.out / "vtk").glob("tool.*.vtp"))) > 2
     page = (worn.out / "report.html").read_text(encoding="utf-8")
     assert "in perspective" in page and "[Rojek 2003, 13.3]: 0.14 mm" in page
 

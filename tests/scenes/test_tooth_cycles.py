@@ -4,13 +4,14 @@ import os
 import shutil
 import signal
 import subprocess
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
 
 from tests.running import (
     ROOT, SMALL, arguments, assert_as_if_never_stopped, assert_refused, history, interrupt, refusals, run_script,
-    tooth_cycles, value)
+    tooth_cycles, value, vtk_field)
 
 TINY = dict(start_up=2e-4, cycles=0, report="false")
 TOOTH = "tooth_height", "tooth_width", "rake", "clearance"
@@ -277,11 +278,13 @@ def test_every_crack_is_logged_with_place_mode_and_energy(cut):
 
 
 def test_vtk_on_request(cut):
-    lines = sorted((cut.out / "vtk").glob("tool.*.vtk"))[-1].read_text(encoding="utf-8").splitlines()
-    count = int(lines[4].split()[1])
-    assert count == value(cut, "tool_particles") - value(cut, "particles_removed")
-    assert "SCALARS temperature double 1" in lines
-    assert len(lines) == 5 + count + 1 + count + 1 + 3 * (2 + count)
+    file = sorted((cut.out / "vtk").glob("tool.*.vtp"))[-1]
+    count = value(cut, "tool_particles") - value(cut, "particles_removed")
+    assert len(vtk_field(file, "points")) == 3 * count and len(vtk_field(file, "temperature")) == count
+    entries = ElementTree.parse(cut.out / "vtk/tool.pvd").iter("DataSet")
+    shown = {float(entry.get("timestep")): cut.out / "vtk" / entry.get("file") for entry in entries}
+    assert sorted(shown) == list(shown) and shown[max(shown)] == file and all(path.exists() for path in shown.values())
+    assert max(shown) == pytest.approx(value(cut, "simulated_time"), rel=1e-12) and len(shown) > 2
 
 
 def test_history_has_units_and_rises_in_time(cut):

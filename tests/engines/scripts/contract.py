@@ -563,10 +563,19 @@ def visits_due(period, start):
     return (start >= period) + (SAVED - 1) // period
 
 
+def open_history(world, folder):
+    """Give the recorder of a world its files, as a run does."""
+    folder.mkdir(exist_ok=True)
+    for engine in world.engines:
+        if isinstance(engine, Recorder):
+            assert engine.history.open(folder / "history.f8", folder / "history.csv")
+
+
 def check(kind, folder):
     """{check: [what is wrong]} of a world; and what was covered."""
     world = kind()
     world.build()
+    open_history(world, folder)
     first = of_engines(world)
     wrong = {"state": [], "log": [], "visits": [], "round trip": [], "restart": []}
     for last in (False, True):
@@ -592,6 +601,7 @@ def check(kind, folder):
     again = kind()
     state, directory = checkpoint.load(folder, {})
     again.restore(state, directory, folder)
+    open_history(again, folder)
     wrong["round trip"] = different(bits(of_engines(again)), bits(states))
     again.advance(AFTER)
     wrong["restart"] = different(all_numbers(again) | bits(yade_now()), never)
