@@ -1,5 +1,7 @@
 """Files that are whole or not there, and whose errors name them."""
+import errno
 import os
+import shutil
 from contextlib import contextmanager
 
 
@@ -12,6 +14,12 @@ def naming(path):
         if error.filename is None and error.errno is not None:
             raise OSError(error.errno, error.strerror, str(path)) from error
         raise
+
+
+def require_room(folder, size):
+    """Raise OSError unless so many bytes are free on the disk of `folder`."""
+    if shutil.disk_usage(folder).free < size:
+        raise OSError(errno.ENOSPC, f"No space left for {size} bytes", str(folder))
 
 
 @contextmanager

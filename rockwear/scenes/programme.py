@@ -7,6 +7,7 @@ from contextlib import nullcontext
 import numpy as np
 from yade import O
 
+from rockwear.engines import access
 from rockwear.engines.bond_log import Crack
 from rockwear.kernels.rigid_motion import Straight
 
@@ -150,7 +151,7 @@ class StartState:
         """Keep what is there now."""
         scene = self.scene
         scene.canonical()
-        O.save(str(folder / self.FILE))
+        access.save(folder / self.FILE)
         self.kept = {"bonds": scene.bonds.state(), "bodies": scene.tool.bodies.state()}
         if scene.heat:
             self.kept["rock_temperature"] = scene.heat.network.temperature[:scene.rock.count].copy()

@@ -131,7 +131,7 @@ class Scene(ABC):
 
     def save(self, directory, folder):
         """Write YADE's scene into `directory` of a checkpoint of the run in `folder`."""
-        O.save(str(directory / "scene.yade.gz"))
+        access.save(directory / "scene.yade.gz")
 
     def restore(self, state, directory, folder):
         """Go back to a checkpoint: `state`, and YADE's scene in `directory`."""

@@ -1,13 +1,15 @@
 """The virtual laboratory: exact moduli of a lattice, failure of a small specimen, resuming, bad input."""
 import json
 import math
+import resource
 import signal
 
 import numpy as np
 import pytest
 
 from tests.running import (
-    ROOT, arguments, assert_as_if_never_stopped, assert_refused, history, interrupt_script, refusals, run_script, value)
+    ROOT, arguments, assert_as_if_never_stopped, assert_refused, finish, history, interrupt_script, refusals,
+    run_script, start, value)
 
 SCRIPT = ROOT / "yade_scripts/uniaxial.py"
 EXACT = ROOT / "tests/scenes/scripts/laboratory.py"
@@ -98,6 +100,22 @@ def test_stopped_and_resumed_equals_never_stopped(compressed, tmp_path):
     stopped = interrupt_script(SCRIPT, out, signal.SIGTERM, 2, **{**SMALL, **options})
     assert stopped.code == 128 + signal.SIGTERM
     assert_as_if_never_stopped(laboratory(out, "--resume", **options), compressed)
+
+
+def test_a_full_disk_ends_the_run_in_one_line_and_leaves_it_resumable(tmp_path):
+    """A limit on the size of a file stands for the disk: history.csv reaches it first."""
+    out = tmp_path / "out"
+    words = [*arguments({**SMALL, "test": "tension", "record_strain": 1e-6}), "--out", str(out)]
+    limit = 200_000
+    full = finish(start(SCRIPT, words, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))))
+    lines = [line for line in full.stderr.splitlines() if "rror" in line]
+    assert full.code == 1 and len(lines) == 1 and "File too large: " in lines[0] and "history.csv'" in lines[0]
+    assert "Traceback" not in full.stderr and "the last checkpoint is kept" in lines[0]
+    resumed = run_script(SCRIPT, *words, "--resume", out=out)
+    assert resumed.code == 0, resumed.stderr
+    assert (out / "history.csv").stat().st_size > limit
+    period = np.diff(history(out)["time [s]"])
+    assert period == pytest.approx(period[0], rel=1e-4)
 
 
 @pytest.mark.parametrize("law", ["damage", "plastic"])
