@@ -43,12 +43,15 @@ def process_of(folder):
 
 
 def kill_worker(folder, found):
-    """Kill the worker of the row in `folder` after its first chunk; note the checkpoint then, and how long YADE ran
-    on."""
+    """Kill the worker of the row in `folder` once its second chunk has a row; note what there is then, and how long
+    YADE ran on."""
     current = folder / "checkpoint/current.json"
     deadline = time.time() + 60
     while time.time() < deadline and not (current.exists() and json.loads(
             current.read_text(encoding="utf-8"))["set"] > 1):
+        time.sleep(0.01)
+    size = (folder / "history.csv").stat().st_size
+    while time.time() < deadline and (folder / "history.csv").stat().st_size == size:
         time.sleep(0.01)
     child = process_of(folder)
     worker = int(PARENT.search(Path(f"/proc/{child}/stat").read_text(encoding="utf-8"))[1])
