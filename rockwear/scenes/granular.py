@@ -244,6 +244,6 @@ class GranularOutput(Output):
         return {"time": self.scene.time, "stage": self.scene.stage, "grain_positions": places}
 
     def write_vtk(self, folder, number):
-        """grains.NNNN.vtk: diameter."""
+        """grains.NNNN.vtp: diameter."""
         places, left = self.scene.positions()
-        vtk.write(folder / f"grains.{number:04d}.vtk", places, {"diameter": 2 * self.scene.grains.radii[left]})
+        vtk.write(folder, "grains", number, self.scene.time, places, {"diameter": 2 * self.scene.grains.radii[left]})

@@ -106,7 +106,7 @@ def test_a_full_disk_ends_the_run_in_one_line_and_leaves_it_resumable(tmp_path):
     """A limit on the size of a file stands for the disk: history.csv reaches it first."""
     out = tmp_path / "out"
     words = [*arguments({**SMALL, "test": "tension", "record_strain": 1e-6}), "--out", str(out)]
-    limit = 200_000
+    limit = 100_000
     full = finish(start(SCRIPT, words, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))))
     lines = [line for line in full.stderr.splitlines() if "rror" in line]
     assert full.code == 1 and len(lines) == 1 and "File too large: " in lines[0] and "history.csv'" in lines[0]
