@@ -26,7 +26,7 @@ GROUPS = [
                   "four are those of Zhou, Xu, Yu and Zulli (2002), whose test this is; wider boxes give lower heaps"),
         Parameter("plate", "rough", "", choice("rough", "smooth"), "what the heap stands on: fixed grains, or a wall, "
                   "from which grains that roll freely roll off"),
-        Parameter("fill_ratio", 0.75, "", number(0.2, 4), "height of the fill over half the plate's length; a heap "
+        Parameter("fill_ratio", 1.2, "", number(0.2, 4), "height of the fill over half the plate's length; a heap "
                   "steeper than that would be cut off"),
         Parameter("opening", 6.0, "diameters", number(2, 100), "width of the opening on either side of the plate"))),
     Group("motion", (
