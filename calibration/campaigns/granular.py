@@ -19,7 +19,9 @@ SIZE = dict(particles=1500, report="false")
 MIDDLE = dict(friction=0.5, rolling_resistance=0.1)
 CHECKS = {
     "seed 2": dict(seed=2), "twice as many grains": dict(particles=3000),
-    "rolling resistance 0.02": dict(rolling_resistance=0.02), "no friction on walls": dict(wall_friction=0.0)}
+    "rolling resistance 0.02": dict(rolling_resistance=0.02), "no friction on walls": dict(wall_friction=0.0),
+    "no friction on walls, free rolling": dict(wall_friction=0.0, rolling_resistance=0.0),
+    "free rolling, box 12 diameters thick": dict(rolling_resistance=0.0, thickness=12, particles=4500)}
 """{what differs from the middle point: values}."""
 AMPLITUDES, FREQUENCIES = (1e-4, 2e-4, 4e-4), (30.0, 60.0)
 SAND = dict(vibrating=0.5, report="false")
@@ -48,6 +50,11 @@ def angle_of(run):
     return f"{run.result('angle_of_repose'):.1f} ± {run.result('angle_of_repose_standard_error'):.1f}"
 
 
+def zhou_of(run):
+    """The angle of the relation, as text; it has none without rolling resistance or friction on walls."""
+    return f"{run.result('angle_zhou_2002'):.1f}" if run.result("angle_zhou_2002") > 0 else "-"
+
+
 def heap_words(key, run):
     """A line on a finished heap."""
     return f"{folder_of(key)}: {angle_of(run)} deg"
@@ -71,7 +78,7 @@ def heap_lines(runs):
     lines += ["## Checks at friction 0.5 and rolling resistance 0.1", ""]
     keys = [(MIDDLE["friction"], MIDDLE["rolling_resistance"]), *CHECKS]
     rows = [[key if isinstance(key, str) else "the point itself", angle_of(runs[key]),
-             f"{runs[key].result('angle_zhou_2002'):.1f}", f"{1e3 * runs[key].result('heap_height'):.0f}",
+             zhou_of(runs[key]), f"{1e3 * runs[key].result('heap_height'):.0f}",
              runs[key].result("grains_left"), f"{runs[key].result('kinetic_over_fall_energy'):.1g}",
              f"{runs[key].summary['wall_time']['total']:.0f}"] for key in keys]
     return lines + generated.table(["run", "angle, deg", "Zhou and others", "height, mm", "grains left",
