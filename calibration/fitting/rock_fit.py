@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from calibration.campaigns.runs import RunFailed, Runs
+from calibration.campaigns.runs import RunFailed, Runs, require_dask
 from calibration.fitting import rock_page
 from calibration.fitting.rock_unknowns import AIM, Micro
 from calibration.fitting.rock_targets import GROUPS, STAGES, given_of, start_of, targets_of
@@ -143,6 +143,7 @@ def main(words):
                             "--tensile_strength PA --out DIR [--name value ...]")
         return 0
     try:
+        require_dask()
         values = parameters.read(GROUPS, words)
         targets = targets_of(values)
         start = start_of(values)
