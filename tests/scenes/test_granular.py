@@ -11,9 +11,9 @@ from tests.running import (
     refusals, run_script, value)
 
 HEAP, TUBE = ROOT / "yade_scripts/angle_of_repose.py", ROOT / "yade_scripts/vibrated_tube.py"
-BOX = dict(particles=300, fill_ratio=0.75, opening=5, thickness=2, friction=0.4, wall_friction=0.2, rolling_resistance=0.02,
-           radius_min=2.4e-3, radius_max=2.6e-3, settling=0.08, draining=0.6, time_step_fraction=0.4,
-           snapshot_period=0.2)
+BOX = dict(particles=300, fill_ratio=0.75, opening=5, thickness=2, friction=0.4, wall_friction=0.2,
+           rolling_resistance=0.02, radius_min=2.4e-3, radius_max=2.6e-3, settling=0.08, draining=0.6,
+           time_step_fraction=0.4, snapshot_period=0.2)
 FLASK = dict(particles=250, radius_min=2.4e-3, radius_max=2.6e-3, tube_diameter=0.014, tube_axis=9e-3, depth=0.018,
              width=0.026, tube_length=0.03, settling=0.1, vibrating=0.05, rolling_resistance=0, snapshot_period=0.05)
 
