@@ -25,12 +25,7 @@ def shown(observable, value):
 def progress(step):
     """One line on a step."""
     parts = [f"{o.name} {shown(o, float(np.mean(values)))} ({off(o, values)})" for o, values in step.values.items()]
-    return f"{took(step)}  {step.stage:8s} {', '.join(parts)}"
-
-
-def took(step):
-    """Words on the time until the end of a step."""
-    return f"{step.seconds / 60:.1f} min ({step.processor / 60:.1f} of processor)"
+    return f"{step.seconds / 60:5.1f} min  {step.stage:8s} {', '.join(parts)}"
 
 
 def off(observable, values):
@@ -135,12 +130,11 @@ def page(found, *, micro, targets, values):
     lines += [f"They hold at radii of {radii} mm in the plane. Standard errors of what was varied, from the scatter of "
               "packings: " + ", ".join(f"{name} {100 * error:.1f} %" for name, error in zip(micro.names, found.error))
               + "." + (f" Not varied: {', '.join(micro.fixed)}, for want of a target." if micro.fixed else ""), ""]
-    lines += ["## Steps", "", f"{took(found.steps[-1])}, without runs kept from an earlier start. Means over the "
-              "packings of each stage, and the time since the start:", ""]
+    lines += ["## Steps", "", "Means over the packings of each stage; minutes since the start, without runs kept from "
+              "an earlier one:", ""]
     lines += generated.table(
-        ["stage", "min", "min of processor", *micro.names, *(o.name for o in micro.observables)],
-        [[step.stage, f"{step.seconds / 60:.1f}", f"{step.processor / 60:.1f}",
-          *(f"{value:.4g}" for value in np.exp(step.x)),
+        ["stage", "min", *micro.names, *(o.name for o in micro.observables)],
+        [[step.stage, f"{step.seconds / 60:.1f}", *(f"{value:.4g}" for value in np.exp(step.x)),
           *(f"{shown(o, float(np.mean(step.values[o])))} ({off(o, step.values[o])})" for o in micro.observables)]
          for step in found.steps])
     return lines

@@ -7,18 +7,15 @@ import numpy as np
 
 from calibration.campaigns.runs import RunFailed
 
-COMMON = {"report": "false", "snapshot_period": 1}
+COMMON = {"report": "false", "snapshot_period": 1, "rock_sampling_period": 50}
+"""Looks at slipping contacts of rock enter the energy balance alone; at the default period they take a tenth of a test.
+"""
 SPEED = {"compression": 6.8, "tension": 42.0}
 """Speed of a platen, m/s, over strength / E. They are those of [Rojek 2003]'s bonds at 0.05 m/s: a rock that fails at
 less strain is loaded as much more slowly (calibration/results/uniaxial.md)."""
 DROP = 0.8
 """Part of the peak at which a test of strength ends. In 32 tests with grains, up to 15 MPa of confinement, none that
 fell so far rose above its peak again; to 0.5 a compression takes a fifth longer, a confined one up to twice as long."""
-SAMPLING = 50
-"""Steps between looks at slipping contacts of rock. They enter the energy balance alone, and at the default take a
-tenth of a test."""
-TOUGHNESS_SIZE = 64.0
-"""Size of a toughness specimen over the mean radius."""
 LEAST = 2
 """Packings below which there is no mean."""
 DEAR, DEAR_PACKINGS = ("triaxial",), 3
@@ -28,10 +25,12 @@ scatters by a fifth."""
 
 @dataclass(frozen=True)
 class Stage:
-    """A set of tests. side: of a specimen over the mean radius; hurry: factor on SPEED; seeds: of the packings."""
+    """A set of tests. side, notched: of a specimen and of one for the toughness over the mean radius; hurry: factor on
+    SPEED; seeds: of the packings."""
 
     name: str
     side: float
+    notched: float
     hurry: float
     seeds: tuple
 
@@ -88,11 +87,11 @@ class Laboratory:
         """(script, {parameter: value}) of a test but for the rock."""
         t, radius = self.targets, self.micro.radius
         side = _digits(stage.side * radius)
-        box = {"width": side, "height": side, "drop": DROP, "rock_sampling_period": SAMPLING}
+        box = {"width": side, "height": side, "drop": DROP}
         squeeze = _digits(stage.hurry * SPEED["compression"] * t.ucs / t.youngs_modulus)
         pull = _digits(stage.hurry * SPEED["tension"] * t.tensile_strength / t.youngs_modulus)
         if test == "toughness":
-            return "yade_scripts/toughness.py", {"size": _digits(TOUGHNESS_SIZE * radius)}
+            return "yade_scripts/toughness.py", {"size": _digits(stage.notched * radius)}
         if test == "triaxial":
             return "yade_scripts/triaxial.py", {**box, "speed": squeeze, "confinement": confinement}
         return "yade_scripts/uniaxial.py", {"test": test, **box, "speed": squeeze if test == "compression" else pull}
