@@ -17,14 +17,12 @@ from calibration.fitting.surrogate import Problem, Surrogate, solve, uncertainty
 from rockwear.kernels.checks import ParameterError, require
 from rockwear.run import parameters
 
-SMALL = Stage("small", side=43.6, notched=32.0, hurry=2.0, seeds=(1, 2, 3, 4))
-FULL = Stage("full", side=87.2, notched=64.0, hurry=2.0, seeds=tuple(range(11, 21)))
-CHECK = Stage("check", side=87.2, notched=64.0, hurry=1.0, seeds=tuple(range(21, 31)))
+SMALL = Stage("small", side=43.6, notched=32.0, seeds=(1, 2, 3, 4))
+FULL = Stage("full", side=87.2, notched=64.0, seeds=tuple(range(11, 21)))
+CHECK = Stage("check", side=87.2, notched=64.0, seeds=tuple(range(21, 31)))
 """Full specimens have 2,100 particles, as those of [Rojek 2003, 5.1]; small ones a quarter of them, and twice the
-scatter: they give the slopes. Twice the speed costs half and raises strengths by 1.5 % (calibration/results/
-generated/loading_speed.md), less than a search aims at; the check is slow. UCS scatters by 9 % between full specimens:
-on a made-up laboratory of that scatter some 92 of 100 fits come within the tolerances of the true means with ten
-packings, 85 to 89 with five."""
+scatter: they give the slopes. UCS scatters by 9 % between full specimens: on a made-up laboratory of that scatter some
+92 of 100 fits come within the tolerances of the true means with ten packings, 85 to 89 with five."""
 SEARCH = {"small": (7, 1.0), "full": (2, 0.4)}
 """{stage: (measurements at most, part of what is allowed that they may miss at the end)}. Small specimens differ from
 full ones by as much as is allowed: to search on them for less is lost time."""
