@@ -5,9 +5,10 @@ into a tube over amplitude and frequency.
 
 Runs that finished are kept. Writes granular.md, granular.png and provenance.json into DIR.
 """
-import math
 import sys
 from pathlib import Path
+
+import numpy as np
 
 from calibration import generated
 from calibration.campaigns.runs import PLACEMENT, Runs, placement, wait_for
@@ -110,7 +111,8 @@ def draw(heaps, tubes):
                       label=f"rolling resistance {eta:g}")
         if eta > 0:
             left.plot(FRICTIONS, [run.result("angle_zhou_2002") for run in runs], color=colour, linestyle=":")
-    left.plot([0, 0.8], [0, math.degrees(math.atan(0.8))], color=palette.GUIDE, linewidth=1, label="friction angle")
+    friction = np.linspace(0, max(FRICTIONS), 50)
+    left.plot(friction, np.degrees(np.arctan(friction)), color=palette.GUIDE, linewidth=1, label="friction angle")
     left.set(xlabel="friction", ylabel="angle of repose / deg", xlim=(0, 0.85), ylim=(0, None),
              title="dotted: the relation of Zhou and others (2002)")
     left.legend(loc="lower right", fontsize=9)
