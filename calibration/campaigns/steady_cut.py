@@ -41,10 +41,11 @@ ROCK = dict(bond_law="cohesive", rotation="blocked", kn=1.29e10, kt=4e9, mu=0.3,
 CUT = dict(depth_of_cut=5e-3, rake=-5.0, velocity=4.0, tooth_width=8e-3, tooth_height=20e-3, window_behind=0.02,
            window_ahead=0.044, window_height=0.03, snapshot_period=1e-3, cut_length=0.04)
 DISCS = dict(radius_min=5e-4, radius_max=7.5e-4)
+FINE = dict(radius_min=2.5e-4, radius_max=3.75e-4, bonding_gap=2.5e-5)
 LONG = 0.06
 """m of way in the base."""
-BOX = dict(width=0.06, height=0.03)
-"""Of the laboratory, m; loaded along its length."""
+BOX, FINE_BOX = dict(width=0.06, height=0.03), dict(width=0.04, height=0.02)
+"""Of the laboratory, m; loaded along its length; the second for fine discs."""
 SPEEDS = {"compression": 0.04, "tension": 0.02}
 """Of each platen, m/s."""
 
@@ -60,8 +61,19 @@ ROCKS = {
     "fracture energy 100": dict(ROCK, bond_fracture_energy=100.0),
     "Weibull modulus 4": dict(ROCK, weibull_modulus=4.0),
     "p sandstone": dict(rock="p_sandstone"),
+    "shear energy 300": dict(ROCK, bond_shear_energy=300.0),
+    "shear energy 1000": dict(ROCK, bond_shear_energy=1000.0),
+    "fine, no shear energy": dict(ROCK, **FINE),
+    "fine, shear energy 300": dict(ROCK, bond_shear_energy=300.0, **FINE),
+    "fine, shear energy 1000": dict(ROCK, bond_shear_energy=1000.0, **FINE),
+    "fine, shear energy 300, rotation free": dict(ROCK, bond_shear_energy=300.0, rotation="free", **FINE),
 }
-"""Rocks that are cut as the base is. Slip does not damage a cohesive bond; a Coulomb bond breaks in shear at once."""
+"""Rocks that are cut as the base is. Slip does not damage a cohesive bond without shear energy; a Coulomb bond breaks
+in shear at once."""
+FINE_CUT = dict(tool_radius_min=2e-4, tool_radius_max=2.4e-4, grading_factor=3, fine_depth=0.011, window_ahead=0.036,
+                window_height=0.04, tool_kn=1e10, tool_kt=1e10, time_step_fraction=0.95, rock_sampling_period=16)
+"""Fine discs as deep as the cut breaks and larger ones below, in a higher window; softer tool contacts, longer steps
+and rarer samples of friction, which all save time."""
 CUTS = {
     "boundary fixed": dict(boundary="fixed"),
     "velocity 8 m/s": dict(velocity=8.0),
@@ -77,7 +89,6 @@ CUTS = {
     "rake 10°": dict(rake=10.0),
     "rake -15°": dict(rake=-15.0),
     "window doubled": dict(window_behind=0.04, window_ahead=0.088, window_height=0.06),
-    "discs halved": dict(radius_min=2.5e-4, radius_max=3.75e-4),
 }
 """How else the base rock is cut."""
 CASES = [BASE, *[name for name in ROCKS if name != BASE], *CUTS]
@@ -94,6 +105,11 @@ def slug(*words):
     return "-".join("".join(c if c.isalnum() or c in "-." else "_" for c in str(word)) for word in words)
 
 
+def is_fine(rock):
+    """Whether a rock has the fine discs."""
+    return rock.items() >= FINE.items()
+
+
 def rock_of(case):
     """The rock that a case cuts."""
     return case if case in ROCKS else BASE
@@ -102,12 +118,15 @@ def rock_of(case):
 def cut_of(case, seed):
     """Parameters of a cut."""
     longer = {"cut_length": LONG} if case == BASE else {}
-    return {**DISCS, **CUT, **longer, **ROCKS[rock_of(case)], **CUTS.get(case, {}), "seed": seed, "report": "false"}
+    rock = ROCKS[rock_of(case)]
+    fine = FINE_CUT if is_fine(rock) else {}
+    return {**DISCS, **CUT, **longer, **fine, **rock, **CUTS.get(case, {}), "seed": seed, "report": "false"}
 
 
 def test_of(rock, test, seed):
     """Parameters of a laboratory test."""
-    return {**DISCS, **BOX, **ROCKS[rock], "test": test, "speed": SPEEDS[test], "seed": seed, "snapshot_period": 1,
+    box = FINE_BOX if is_fine(ROCKS[rock]) else BOX
+    return {**DISCS, **box, **ROCKS[rock], "test": test, "speed": SPEEDS[test], "seed": seed, "snapshot_period": 1,
             "report": "false"}
 
 
