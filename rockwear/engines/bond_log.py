@@ -30,6 +30,8 @@ class BondLog(Engine):
         self.law, self.laws = law, [law] * len(self.pairs) if laws is None else laws
         self.status = np.full(len(self.pairs), INTACT, np.int8)
         self.cracks, self.broken, self.energy_released, self.clock = [], {}, 0.0, clock
+        self.parted = []
+        """Numbers of the bonds that have separated since `RockContacts` took note of them."""
 
     def begin(self, there):
         """Only these bonds (m,) bool are there at first; the others may be made later."""

@@ -94,7 +94,6 @@ class Bonds(BondLog):
         self.functor = law_functor(Law2_ScGeom_JCFpmPhys_JointedCohesiveFrictionalPM)
         self.shear_by_radii = geometry_functor(Ig2_Sphere_Sphere_ScGeom).avoidGranularRatcheting
         self.elastic, self.broken, self.ends = {}, {}, self.pairs.copy()
-        self.separations = int(np.sum(self.status == SEPARATED))
         for n, (i, j) in enumerate(self.pairs.tolist()):
             if self.status[n] != SEPARATED:
                 interaction = O.interactions[i, j]
@@ -222,7 +221,8 @@ class Bonds(BondLog):
                                  softening.dissipated, *self.pairs[n].tolist()))
 
     def _separate(self, n):
-        self.separations += self.status[n] != SEPARATED
+        if self.status[n] != SEPARATED:
+            self.parted.append(n)
         self.status[n] = SEPARATED
         for group in (self.elastic, self.broken, self.softening_bonds, self.returned):
             group.pop(n, None)

@@ -121,7 +121,6 @@ class CpmBonds(BondLog):
         if self.strains is not None:
             self._set_strains(*self.strains)
             self.strains = None
-        self.separations = int(np.sum(self.status == SEPARATED))
         self._prepare()
 
     def _take_up(self, numbers):
@@ -224,7 +223,8 @@ class CpmBonds(BondLog):
                                  *self.pairs[n].tolist()))
 
     def _separate(self, n):
-        self.separations += self.status[n] != SEPARATED
+        if self.status[n] != SEPARATED:
+            self.parted.append(n)
         self.status[n] = SEPARATED
         _turn_of(n, self.active).pop(n, None)
         _turn_of(n, self.quiet).pop(n, None)

@@ -26,13 +26,25 @@ class RockContacts(Engine):
 
     def find_contacts(self):
         """Find the contacts between rock particles that are no bonds, and the pairs that may touch before the collider
-        runs again or a broken bond is erased."""
+        runs again or a bond parts."""
         self.collider = yade_engine(InsertionSortCollider)
-        self.seen = self.collider.numAction, self.bonds.separations
-        found = [i for i in O.interactions.all() if max(i.id1, i.id2) < self.particles
-                 and not isinstance(i.phys, (JCFpmPhys, CpmPhys))]
+        self.seen = self.collider.numAction
+        self.bonds.parted.clear()
+        self._take(i for i in O.interactions.all() if max(i.id1, i.id2) < self.particles)
+
+    def _take(self, found):
+        kept = {(i.id1, i.id2): i for i in found if not isinstance(i.phys, (JCFpmPhys, CpmPhys))}
         # A loaded scene has them in another order.
-        self.possible = sorted(found, key=lambda i: (i.id1, i.id2))
+        self.possible = [kept[pair] for pair in sorted(kept)]
+
+    def _keep_up(self):
+        """Bring `possible` up to date: all over if the collider has run, which is dear; else with bonds that parted."""
+        if self.collider.numAction != self.seen:
+            self.find_contacts()
+        elif self.bonds.parted:
+            pairs = self.bonds.pairs[self.bonds.parted].tolist()
+            self.bonds.parted.clear()
+            self._take([*self.possible, *(O.interactions[i, j] for i, j in pairs if O.interactions.has(i, j))])
 
     @property
     def contacts(self):
@@ -62,8 +74,7 @@ class RockFriction(RockContacts):
 
     def act(self):
         elapsed = self.elapsed()
-        if (self.collider.numAction, self.bonds.separations) != self.seen:
-            self.find_contacts()
+        self._keep_up()
         mu = self.bonds.law.mu
         for interaction, phys in self.bonds.broken.values():
             if phys.crackJointAperture == 0.0:
