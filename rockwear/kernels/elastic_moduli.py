@@ -3,6 +3,7 @@ import math
 from collections import namedtuple
 
 import numpy as np
+from scipy import sparse
 from scipy.sparse.linalg import splu
 
 from rockwear.kernels.checks import positive, require
@@ -10,6 +11,8 @@ from rockwear.kernels.stability import contact_rows
 
 STRAINS = np.array([[[1.0, 0.0], [0.0, 0.0]], [[0.0, 0.0], [0.0, 1.0]], [[0.0, 0.5], [0.5, 0.0]]])
 """Unit strains: along x, along y, and an engineering shear of 1."""
+HOLD = 1e-11
+"""Part of the stiffness of each displacement and rotation that is added to it."""
 
 
 class Moduli(namedtuple("Moduli", "young poisson shear")):
@@ -87,7 +90,10 @@ def _free(x, low, high, around, pairs):
 def _fluctuation(rows, imposed, free):
     """(3n, 3): displacements and rotations in equilibrium under each strain."""
     found, part = np.zeros((rows.shape[1], 3)), rows[:, free].tocsc()
-    found[free] = -splu((part.T @ part).tocsc()).solve(part.T @ imposed)
+    stiffness = part.T @ part
+    # A particle that hangs on one bond rolls without force: a trace of stiffness keeps it where it is.
+    hold = sparse.diags(HOLD * stiffness.diagonal())
+    found[free] = -splu((stiffness + hold).tocsc()).solve(part.T @ imposed)
     return found
 
 

@@ -36,6 +36,17 @@ def test_a_triangular_lattice_is_exact(cell):
     assert found.speeds(2500.0) == pytest.approx((math.sqrt(along / 2500), math.sqrt(shear / 2500)), rel=1e-9)
 
 
+def test_particles_that_hang_on_one_bond_carry_nothing():
+    cell = lattice(4, 4)
+    exact = stiffness_tensor(**cell)
+    n, places, radii = 16, cell["positions"], cell["radii"]
+    hanging = places[[3, 9]] + [[2e-4, 1e-4], [1e-4, -3e-4]]
+    pair = places[5] + [[3e-4, 3e-4], [5e-4, 3e-4]]
+    more = dict(cell, positions=np.vstack([places, hanging, pair]), radii=np.concatenate([radii, np.full(4, 1e-4)]),
+                bonds=np.vstack([cell["bonds"], [[3, n], [9, n + 1], [n + 2, n + 3]]]))
+    np.testing.assert_allclose(stiffness_tensor(**more), exact, rtol=1e-9, atol=1e-9 * exact.max())
+
+
 def test_a_rim_that_holds_the_strain_gives_what_the_periodic_packing_has():
     packing = pack(box=(0.04, 0.04), radius_min=5e-4, radius_max=7.5e-4, porosity=0.12, seed=1, periodic=(True, True))
     common = {"positions": packing.positions, "radii": packing.radii, "kn": KN, "kt": KT}
