@@ -12,7 +12,7 @@ SMALL = dict(window_behind=0.016, window_ahead=0.048, window_height=0.026, radiu
              tool_radius_min=4e-4, tool_radius_max=5e-4, tooth_height=0.015, tooth_width=0.01, velocity=5.0,
              tool_kn=2e10, tool_kt=2e10, contact_damping=0.2, ramp_length=2e-3, cut_length=0.02, report="false")
 """A steady cut in miniature."""
-LAWS = {"brittle": {},
+LAWS = {"brittle": dict(seed=2),
         "softening": dict(bond_law="cohesive", kt=8e9, rotation="blocked", mu=0.3, weibull_modulus=4, heat="true",
                           control_radius=2.5)}
 
