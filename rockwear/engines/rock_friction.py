@@ -44,7 +44,9 @@ class RockContacts(Engine):
         elif self.bonds.parted:
             pairs = self.bonds.pairs[self.bonds.parted].tolist()
             self.bonds.parted.clear()
-            self._take([*self.possible, *(O.interactions[i, j] for i, j in pairs if O.interactions.has(i, j))])
+            # YADE would end where it is asked for contacts of an erased body.
+            pairs = [(i, j) for i, j in pairs if O.bodies[i] and O.bodies[j] and O.interactions.has(i, j)]
+            self._take([*self.possible, *map(O.interactions.__getitem__, pairs)])
 
     @property
     def contacts(self):
