@@ -10,29 +10,31 @@ from calibration.campaigns.runs import RunFailed
 COMMON = {"report": "false", "snapshot_period": 1, "rock_sampling_period": 50}
 """Looks at slipping contacts of rock enter the energy balance alone; at the default period they take a tenth of a test.
 """
-SPEED = {"compression": 13.6, "tension": 84.0}
-"""Speed of a platen, m/s, over strength / E. They are those of [Rojek 2003]'s bonds at 0.1 m/s: a rock that fails at
-less strain is loaded as much more slowly. They raise strengths by 1.5 %, half as fast costs twice as much
-(calibration/results/generated/loading_speed.md)."""
+SPEED = {"compression": 13.6, "triaxial": 13.6, "tension": 84.0}
+"""Speed of a platen, m/s, over strength / E, of the deviatoric strength in a confined test. They are those of [Rojek
+2003]'s bonds at 0.1 m/s: a rock that fails at less strain is loaded as much more slowly. They raise strengths by 1.5 %,
+half as fast costs twice as much (calibration/results/generated/loading_speed.md)."""
+STRAIN = {"compression": 3.0, "triaxial": 2.0, "tension": 6.0}
+"""Strain at which a test ends at the latest, over strength / E of the target: a specimen that has not failed there is
+far too strong, or flows."""
+ROWS = 200
+"""Rows of a history up to a strain of strength / E."""
 DROP = 0.8
 """Part of the peak at which a test of strength ends. In 32 tests with grains, up to 15 MPa of confinement, none that
 fell so far rose above its peak again; to 0.5 a compression takes a fifth longer, a confined one up to twice as long."""
 LEAST = 2
 """Packings below which there is no mean."""
-DEAR, DEAR_PACKINGS = ("triaxial",), 3
-"""Tests that take minutes, and the packings that they are made on at most. Toughness is quicker than compression, and
-scatters by a fifth."""
-
-
 @dataclass(frozen=True)
 class Stage:
-    """A set of tests. side, notched: of a specimen and of one for the toughness over the mean radius; seeds:
-    of the packings."""
+    """A set of tests. side, notched, confined: of a specimen, of one for the toughness and of one for confined tests
+    over the mean radius; seeds: of the packings; dear: of how many of these packings confined tests are made."""
 
     name: str
     side: float
     notched: float
+    confined: float
     seeds: tuple
+    dear: int
 
 
 class Laboratory:
@@ -51,7 +53,7 @@ class Laboratory:
         tests = {(o.test, o.confinement) for o in self.micro.observables}
         # The longest first, so that both processes end together.
         order = sorted(tests, key=lambda test: ("triaxial", "compression", "toughness", "tension").index(test[0]))
-        seeds = {test: stage.seeds[:DEAR_PACKINGS if test[0] in DEAR else None] for test in order}
+        seeds = {test: stage.seeds[:stage.dear if test[0] == "triaxial" else None] for test in order}
         jobs = {(*test, seed): self._start(*test, seed, parameters, stage) for test in order for seed in seeds[test]}
         done = self._finished(jobs)
         self.not_failed[stage.name] = sorted(
@@ -86,15 +88,17 @@ class Laboratory:
     def _test(self, test, confinement, stage):
         """(script, {parameter: value}) of a test but for the rock."""
         t, radius = self.targets, self.micro.radius
-        side = _digits(stage.side * radius)
-        box = {"width": side, "height": side, "drop": DROP}
-        squeeze = _digits(SPEED["compression"] * t.ucs / t.youngs_modulus)
-        pull = _digits(SPEED["tension"] * t.tensile_strength / t.youngs_modulus)
         if test == "toughness":
             return "yade_scripts/toughness.py", {"size": _digits(stage.notched * radius)}
+        strength = {"compression": t.ucs, "tension": t.tensile_strength,
+                    "triaxial": dict(t.points).get(confinement, 0.0) - confinement}[test]
+        side = _digits((stage.confined if test == "triaxial" else stage.side) * radius)
+        strain = strength / t.youngs_modulus
+        common = {"width": side, "height": side, "drop": DROP, "speed": _digits(SPEED[test] * strain),
+                  "strain_max": _digits(STRAIN[test] * strain), "record_strain": _digits(strain / ROWS)}
         if test == "triaxial":
-            return "yade_scripts/triaxial.py", {**box, "speed": squeeze, "confinement": confinement}
-        return "yade_scripts/uniaxial.py", {"test": test, **box, "speed": squeeze if test == "compression" else pull}
+            return "yade_scripts/triaxial.py", {**common, "confinement": confinement}
+        return "yade_scripts/uniaxial.py", {"test": test, **common}
 
 
 def _digits(value):

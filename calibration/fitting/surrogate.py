@@ -18,6 +18,9 @@ FREE = 1e6
 """Standard deviation of what is not known."""
 SETTLED = 2e-3
 """Change of all unknowns below which another step cannot come nearer."""
+GAIN = 0.25
+"""Least expected approach of a step, over what the misfits may be at the end: where targets contradict each other, the
+search ends at the best place and does not follow the noise."""
 
 
 class Surrogate:
@@ -66,6 +69,12 @@ class Surrogate:
         return centre + lsq_linear(weight[:, None] * slopes, weight * (problem.target - a),
                                    bounds=(low - 1e-9, high + 1e-9)).x
 
+    def approach(self, problem, old, new):
+        """By how many tolerances (root of the sum of squares) `new` (n,) is expected to be nearer than `old` (n,)."""
+        a, slopes, _ = self.about(old)
+        before, after = ((y - problem.target) / problem.tolerance for y in (a, a + slopes @ (new - old)))
+        return float(np.linalg.norm(before) - np.linalg.norm(after))
+
 
 @dataclass
 class Problem:
@@ -104,7 +113,7 @@ def solve(measure, surrogate, problem, *, start, most, enough=1.0):
             solution.reached = True
             return solution
         new = surrogate.solve(problem, x)
-        if np.max(abs(new - x)) < SETTLED:
+        if np.max(abs(new - x)) < SETTLED or surrogate.approach(problem, x, new) < GAIN * enough:
             break
         x = new
     # Where not all targets can be met, the sum of squares keeps the others.
