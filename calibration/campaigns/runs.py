@@ -156,7 +156,7 @@ class Runs:
         with dask.config.set({"distributed.scheduler.allowed-failures": LOST,
                               "distributed.scheduler.worker-saturation": 1.0}), _uninterrupted():
             self.cluster = distributed.LocalCluster(
-                n_workers=self.at_once, threads_per_worker=1, dashboard_address=None, memory_limit=0,
+                n_workers=self.at_once, threads_per_worker=1, dashboard_address=":0", memory_limit=0,
                 silence_logs=logging.CRITICAL, local_directory=self.scratch.name)
         self.client = distributed.Client(self.cluster)
 

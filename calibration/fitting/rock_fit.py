@@ -1,5 +1,6 @@
 """Fits the micro-parameters of a rock to laboratory values: search on small specimens, then on full ones, then a check
 on packings that the fit has not seen. The entry is calibration/fit.py."""
+import os
 import sys
 import time
 from dataclasses import dataclass, field, replace
@@ -11,7 +12,7 @@ import numpy as np
 from calibration.campaigns.runs import RunFailed, Runs, require_dask
 from calibration.fitting import rock_page
 from calibration.fitting.rock_unknowns import AIM, Micro
-from calibration.fitting.rock_targets import GROUPS, STAGES, given_of, start_of, targets_of
+from calibration.fitting.rock_targets import GROUPS, STAGES, doubts, given_of, start_of, targets_of
 from calibration.fitting.rock_tests import Laboratory, Stage
 from calibration.fitting.surrogate import Problem, Surrogate, solve, uncertainty
 from rockwear.kernels.checks import ParameterError, require
@@ -27,6 +28,8 @@ UCS scatters by 9 % between full specimens. The second full set has other packin
 SEARCH = {"small": ((SMALL,) * 7, 1.0), "full": (FULL, 0.4)}
 """{stage: (sets of tests at most, part of what is allowed that they may miss at the end)}. Small specimens differ from
 full ones by as much as is allowed: to search on them for less is lost time."""
+JOBS = 8
+"""Tests at a time for each processor: more only take memory."""
 CHECKS = 2
 """Checks in all. Where the first misses a target its packings join those of the fit, and others check the new rock."""
 LEAST_NOISE, COMMON_SEEDS = 0.004, 0.5
@@ -47,7 +50,8 @@ class Step:
 
 @dataclass
 class Fit:
-    """A fit and how it went. verdicts: {Observable: Verdict} of the last check; error: (n,), of log unknowns."""
+    """A fit and how it went. verdicts: {Observable: Verdict} of the last check; error: (n,), of log unknowns;
+    specimens: words on those of the check."""
 
     x: np.ndarray
     error: np.ndarray
@@ -55,6 +59,7 @@ class Fit:
     verdicts: dict = field(default_factory=dict)
     not_failed: list = field(default_factory=list)
     failures: list = field(default_factory=list)
+    specimens: str = ""
 
 
 @dataclass(frozen=True)
@@ -82,12 +87,15 @@ def fit(*, micro, measure, first_stage=STAGES[0], say=partial(print, flush=True)
         say(rock_page.progress(found.steps[-1]))
         return values
 
+    def measured(sets, x):
+        stage = next(sets)
+        return statistics(tested(x, stage), COMMON_SEEDS if stage is SMALL else 1.0)
+
     model = Surrogate(*micro.slopes())
     for name in STAGES[STAGES.index(first_stage):-1]:
         sets, part = SEARCH[name]
-        of_set = iter(sets)
-        solution = solve(lambda x: statistics(tested(x, stage := next(of_set)), COMMON_SEEDS if stage is SMALL else 1.0),
-                         model, problem, start=found.x, most=len(sets), enough=part / AIM)
+        solution = solve(partial(measured, iter(sets)), model, problem, start=found.x, most=len(sets),
+                         enough=part / AIM)
         found.x = model.solve(problem, solution.x)
         if name == SMALL.name:
             model = model.next_stage(found.x)
@@ -133,10 +141,11 @@ def main(words):
                             "--tensile_strength PA --out DIR [--name value ...]")
         return 0
     try:
-        require_dask()
         values = parameters.read(GROUPS, words)
         targets = targets_of(values)
         start = start_of(values)
+        most = JOBS * os.cpu_count()
+        require(values["jobs"] <= most, "jobs", values["jobs"], f"at most {most}, {JOBS} for each processor here")
         require(values["out"], "out", "nothing", "given: the folder of the results")
         folder = _folder(values["out"])
         require_dask()
@@ -144,6 +153,8 @@ def main(words):
         print(f"error: {error}", file=sys.stderr)
         return 2
     radii = values["radius_min"], values["radius_max"]
+    if words_of_doubt := doubts(targets, sum(radii) / 2):
+        print(words_of_doubt, flush=True)
     micro = Micro(law=values["bond_law"], targets=targets, radius=sum(radii) / 2,
                   given=given_of(values, targets, start), start=start)
     try:
@@ -151,6 +162,7 @@ def main(words):
             laboratory = Laboratory(runs=runs, targets=targets, radii=radii, micro=micro)
             found = fit(micro=micro, measure=laboratory.measure, first_stage=values["first_stage"])
             found.not_failed, found.failures = laboratory.not_failed[found.steps[-1].stage], laboratory.failures
+            found.specimens = laboratory.specimens(CHECK)
         rock_page.write(folder, found, micro=micro, targets=targets, values=values)
     except (RunFailed, OSError) as error:
         print(f"error: {error}", file=sys.stderr)

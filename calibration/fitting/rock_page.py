@@ -37,7 +37,8 @@ def off(observable, values):
 def answer(found, micro):
     """Lines that say what was reached and what was not."""
     missed = [o for o, one in found.verdicts.items() if not one.met]
-    count = next(iter(found.verdicts.values())).count
+    counts = sorted({one.count for one in found.verdicts.values()})
+    count = " to ".join(map(str, counts))
     if not missed:
         lines = [f"All {len(found.verdicts)} targets are met, on {count} packings that the fit has not seen."]
     else:
@@ -52,8 +53,8 @@ def answer(found, micro):
         lines.append("The bonds are all but brittle: toughness then grows with the strength and the square root of the "
                      "radius. A less tough rock takes smaller radii.")
     if found.not_failed:
-        lines.append(f"Some specimens did not fail before the end of the test: {', '.join(found.not_failed)}. Their "
-                     "strengths are lower bounds.")
+        lines.append("In some tests stress had not fallen by a fifth when they ended: "
+                     f"{', '.join(found.not_failed)}. Their strengths are the largest stress up to there.")
     if found.failures:
         lines.append(f"Left out: {'; '.join(found.failures)}.")
     return lines
@@ -113,11 +114,12 @@ def page(found, *, micro, targets, values):
     """Lines of fit.md."""
     lines = [f"# {values['name']}: {values['source']}", "", " ".join(answer(found, micro)), ""]
     lines += generated.table(
-        ["", "target", "mean ± standard deviation", "standard error", "difference", "allowed", "met"],
-        [[o.name, shown(o, o.target), f"{shown(o, one.mean)} ± {shown(o, one.deviation)}",
+        ["", "target", "mean ± standard deviation", "packings", "standard error", "difference", "allowed", "met"],
+        [[o.name, shown(o, o.target), f"{shown(o, one.mean)} ± {shown(o, one.deviation)}", one.count,
           shown(o, one.deviation / math.sqrt(one.count)), off(o, [one.mean]),
           f"{o.tolerance:.3f}" if o.kind == "nu" else f"{100 * o.allowed:g} %", "yes" if one.met else "**no**"]
          for o, one in found.verdicts.items()])
+    lines += [f"Discs of {radii(values)} mm; specimens of {found.specimens}.", ""]
     if targets.left_out:
         lines += [targets.left_out, ""]
     for name, (values_of, unit) in envelope(found, micro).items():
@@ -126,10 +128,10 @@ def page(found, *, micro, targets, values):
                   + (f", target {wanted:g}" if wanted else "") + f" ({len(values_of)} packings).", ""]
     lines += ["![steps](fit.png)", "", "## Micro-parameters", ""]
     lines += generated.table(["parameter", "value"], list(micro.parameters(found.x).items()))
-    radii = " to ".join(f"{1e3 * values[name]:g}" for name in ("radius_min", "radius_max"))
-    lines += [f"They hold at radii of {radii} mm in the plane. Standard errors of what was varied, from the scatter of "
-              "packings: " + ", ".join(f"{name} {100 * error:.1f} %" for name, error in zip(micro.names, found.error))
-              + "." + (f" Not varied: {', '.join(micro.fixed)}, for want of a target." if micro.fixed else ""), ""]
+    errors = ", ".join(f"{name} {100 * error:.1f} %" for name, error in zip(micro.names, found.error))
+    lines += [f"They hold at radii of {radii(values)} mm in the plane. Standard errors of what was varied, from the "
+              f"scatter of packings: {errors}."
+              + (f" Not varied: {', '.join(micro.fixed)}, for want of a target." if micro.fixed else ""), ""]
     lines += ["## Steps", "", "Means over the packings of each stage; minutes since the start, without runs kept from "
               "an earlier one:", ""]
     lines += generated.table(
@@ -138,6 +140,11 @@ def page(found, *, micro, targets, values):
           *(f"{shown(o, float(np.mean(step.values[o])))} ({off(o, step.values[o])})" for o in micro.observables)]
          for step in found.steps])
     return lines
+
+
+def radii(values):
+    """Words on the radii, in mm."""
+    return " to ".join(f"{1e3 * values[name]:g}" for name in ("radius_min", "radius_max"))
 
 
 def figure(found, micro):

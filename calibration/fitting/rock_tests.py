@@ -24,6 +24,8 @@ DROP = 0.8
 fell so far rose above its peak again; to 0.5 a compression takes a fifth longer, a confined one up to twice as long."""
 LEAST = 2
 """Packings below which there is no mean."""
+
+
 @dataclass(frozen=True)
 class Stage:
     """A set of tests. side, notched, confined: of a specimen, of one for the toughness and of one for confined tests
@@ -67,6 +69,15 @@ class Laboratory:
                 raise RunFailed(f"{o.name} could not be measured on {LEAST} packings of the stage {stage.name}: "
                                 f"{'; '.join(self.failures) or 'too few rows before the peak'}")
         return found
+
+    def specimens(self, stage):
+        """Words on the specimens of a stage."""
+        tests = {o.test for o in self.micro.observables}
+        sides = [("compression", "compression and tension", stage.side),
+                 ("toughness", "toughness (load line to back)", stage.notched),
+                 ("triaxial", "confined compression", stage.confined)]
+        return ", ".join(f"{1e3 * side * self.micro.radius:.3g} mm in {words}" for test, words, side in sides
+                         if test in tests)
 
     def _finished(self, jobs):
         """{key: RunFolder} of the jobs that end well. A packing that fails is left out."""

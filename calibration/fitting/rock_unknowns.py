@@ -150,7 +150,8 @@ class Micro:
         if self.law == "cohesive":
             found["bond_fracture_energy"] = u["length"] * u["tension"]**2 / u["kn"]
         found.update(mu=u["mu"], bonding_gap=GAP * self.radius, **self.given)
-        return {"bond_law": self.law, **{name: float(f"{value:.5g}") for name, value in found.items()}}
+        return {"bond_law": self.law, **{name: value if isinstance(value, str) else float(f"{value:.5g}")
+                                         for name, value in found.items()}}
 
     def at_bounds(self, x):
         """[words] on the unknowns that ended at a bound."""

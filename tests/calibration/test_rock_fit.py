@@ -69,14 +69,14 @@ def test_a_rock_without_scatter_is_found_to_the_last_per_cent():
 def test_a_rock_with_scatter_is_met_on_packings_that_were_not_seen(law, targets):
     micro, found, _ = fitted(targets, law)
     assert all(one.met and one.count == 10 for one in found.verdicts.values())
-    seeds = {"small": rock_fit.SMALL.seeds, "full": rock_fit.FULL.seeds}
-    assert not set(seeds["small"] + seeds["full"]) & set(rock_fit.CHECK.seeds)
+    seeds = [seed for stage in (rock_fit.SMALL, *rock_fit.FULL, rock_fit.CHECK) for seed in stage.seeds]
+    assert len(seeds) == len(set(seeds)) == 24
     # The standard errors of the stiffnesses: those of E and nu.
     assert 0.005 < found.error[0] < 0.05 and (found.error < 0.3).all()
 
 
 def test_a_first_check_that_misses_joins_the_fit():
-    """The packings of the fit are 9 % stronger than all others."""
+    """The packings of the fit are 18 % stronger than all others; of its three sets two are such."""
     micro = Micro(law="brittle", targets=SANDSTONE, radius=1.25e-3, given={"porosity": 0.12, "grain_edge": 0.0})
     plain = laboratory(micro, 0.01)
 
@@ -88,7 +88,8 @@ def test_a_first_check_that_misses_joins_the_fit():
     first, second = (step.values for step in found.steps[-2:])
     ucs = micro.observables[2]
     assert [step.stage for step in found.steps[-2:]] == ["check 1", "check 2"]
-    assert np.mean(first[ucs]) < 0.9 * 60e6 < 0.92 * 60e6 < np.mean(second[ucs])
+    misses = [60e6 - np.mean(values[ucs]) for values in (first, second)]
+    assert 0.1 * 60e6 < misses[0] and misses[1] < 0.67 * misses[0]
 
 
 def test_small_specimens_are_searched_to_what_is_allowed_and_full_ones_begin_nearer():
@@ -160,6 +161,13 @@ def test_a_search_begins_with_the_bonds_of_a_rock_at_other_radii():
     given = given_of(values, targets, start)
     assert given["grain_edge"] == pytest.approx(0.5 * part["grain_edge"])
     micro = Micro(law="cohesive", targets=targets, radius=6.25e-4, given=given, start=start)
+    interlocked = {"rotation": "blocked", "bond_shear_energy": 300.0, "weibull_modulus": 2.0}
+    words = {**GIVEN, "start": "interlocked_sandstone"}
+    values = parameters.read(GROUPS, [word for name, value in words.items() for word in (f"--{name}", str(value))])
+    kept = given_of(values, targets, rock_targets.start_of(values))
+    assert {**kept, **interlocked} == kept and kept["porosity"] == 0.12 and kept["grain_edge"] == 0
+    made = Micro(law="cohesive", targets=targets, radius=1e-3, given=kept, start=rock_targets.start_of(values))
+    assert made.parameters(made.first)["rotation"] == "blocked"
     found = micro.parameters(micro.first)
     for name in ("kn", "kt", "bond_tension", "bond_cohesion", "bond_fracture_energy", "mu"):
         assert found[name] == pytest.approx(part[name], rel=1e-4), name
@@ -186,6 +194,13 @@ def test_a_fit_can_begin_with_full_specimens_or_with_the_check():
     assert all(one.met for one in missed.verdicts.values())
 
 
+def test_a_toughness_that_asks_for_finer_discs_is_said_before_the_first_test():
+    """0.15 sqrt(m) at 1.25 mm: 1.05 MPa sqrt(m) at 7 MPa; with the root of the radius."""
+    words = rock_targets.doubts(TOUGH, 1.25e-3)
+    assert "at least some 1e+06 Pa" in words or "at least some 1.1e+06 Pa" in words
+    assert "below 0.92 mm" in words and rock_targets.doubts(TOUGH, 0.9e-3) == rock_targets.doubts(SANDSTONE, 1.0) == ""
+
+
 # ---- what is refused
 
 GIVEN = {"youngs_modulus": 18e9, "poissons_ratio": 0.18, "ucs": 60e6, "tensile_strength": 7e6, "out": "out"}
@@ -204,6 +219,14 @@ BRITTLE = {"bond_law": "brittle"}
     ({"tensile_strength": -7e6}, "tensile_strength = -7e+06 Pa: must be between"),
     ({"fracture_toughness": 0.9, "bond_law": "cohesive"}, "fracture_toughness = 0.9 Pa sqrt(m): must be between"),
     ({"fracture_toughness": 0.9e6, **BRITTLE}, "fracture_toughness = 900000: must be left out with bond_law = brittle"),
+    ({"tensile_strength": 50e6}, "tensile_strength = 5e+07 Pa: must be ucs = 6e+07 divided by 1.5 to 50"),
+    ({"tensile_strength": 7e5}, "tensile_strength = 700000 Pa: must be ucs = 6e+07 divided by 1.5 to 50"),
+    ({"fracture_toughness": 9e6}, "fracture_toughness = 9e+06 Pa sqrt(m): must be at most 1 sqrt(m) times"),
+    ({"fracture_toughness": 0.5e6}, "fracture_toughness = 500000 Pa sqrt(m): must be at least 5.25e+05, half of what"),
+    ({"friction_angle": 80}, "friction_angle = 80 deg: must be at most 71"),
+    ({"porosity": 0}, "porosity = 0: must be between 0.02 and 0.2"),
+    ({"radius_max": 9e-3}, "radius_max = 0.009 m: must be at most 5 times radius_min = 0.001"),
+    ({"jobs": 10**6}, "jobs = 1000000: must be at most "),
     ({"friction_angle": 0.7}, "friction_angle = 0.7 deg: must be between 2 and 89"),
     ({"friction_angle": 40, "triaxial": "table.csv"}, "friction_angle = 40 deg: must be left out with triaxial"),
     ({"triaxial": "nowhere.csv"}, "triaxial = nowhere.csv: must be a readable CSV file"),
@@ -244,21 +267,47 @@ class Recorded:
         return 1.0 if name else self
 
 
-def test_what_is_dear_is_tested_on_small_specimens_first_and_no_longer_than_its_peak():
-    micro = Micro(law="cohesive", targets=TOUGH, radius=1.25e-3, given={})
-    asked = {}
-    for stage in (rock_fit.SMALL, rock_fit.FULL):
-        runs = Recorded()
-        laboratory = rock_fit.Laboratory(runs=runs, targets=TOUGH, radii=(1e-3, 1.5e-3), micro=micro)
-        counts = {o.name: len(values) for o, values in laboratory.measure(micro.first, stage).items()}
-        assert counts["ucs"] == counts["fracture_toughness"] == len(stage.seeds) and counts["sigma1 at 6 MPa"] == 3
-        asked[stage.name] = dict(runs.asked)
-    small, full = asked["small"], asked["full"]
+def asked(stage, targets=TOUGH):
+    """({script: parameters} of the last run of each, {observable: packings}) that a stage asks for."""
+    micro = Micro(law="cohesive", targets=targets, radius=1.25e-3, given={})
+    runs = Recorded()
+    laboratory = rock_fit.Laboratory(runs=runs, targets=targets, radii=(1e-3, 1.5e-3), micro=micro)
+    counts = {o.name: len(values) for o, values in laboratory.measure(micro.first, stage).items()}
+    return dict(runs.asked), counts, laboratory
+
+
+def test_what_is_dear_is_tested_on_small_specimens_and_no_longer_than_its_peak():
+    full_stage = rock_fit.FULL[0]
+    (small, few, _), (full, counts, laboratory) = asked(rock_fit.SMALL), asked(full_stage)
+    assert counts["ucs"] == counts["fracture_toughness"] == len(full_stage.seeds) == 5
+    assert counts["sigma1 at 6 MPa"] == 3 and few["sigma1 at 18 MPa"] == 2
     assert small["toughness.py"]["size"] == pytest.approx(0.04) == full["toughness.py"]["size"] / 2
     assert small["uniaxial.py"]["width"] == pytest.approx(full["uniaxial.py"]["width"] / 2)
+    assert full["triaxial.py"]["width"] == small["triaxial.py"]["width"] == small["uniaxial.py"]["width"]
     for script, values in full.items():
         assert values["rock_sampling_period"] == 50
         assert values.get("drop") == (None if script == "toughness.py" else 0.8)
+    assert laboratory.specimens(full_stage) == (
+        "109 mm in compression and tension, 80 mm in toughness (load line to back), 54.5 mm in confined compression")
+
+
+def test_tests_are_as_fast_and_as_long_as_the_strength_that_they_look_for():
+    """18 MPa: the last confined test, 132 MPa; the last uniaxial one is in tension."""
+    runs, _, _ = asked(rock_fit.SMALL)
+    for script, strain, speed, longest in (
+            ("triaxial.py", 114e6 / 18e9, 13.6, 2.0), ("uniaxial.py", 7 / 18e3, 84.0, 6.0)):
+        values = runs[script]
+        found = [values[name] / strain for name in ("speed", "strain_max", "record_strain")]
+        if script == "triaxial.py" and values["confinement"] == 6e6:
+            found = [value * 114 / 82 for value in found]
+        assert found == pytest.approx([speed, longest, 1 / 200], rel=1e-3), script
+
+
+@pytest.mark.parametrize("highest, friction", [(34e6, 0.7 * (4 / 6.9)**1.4), (1e9, 1.2), (23e6, 0.1)])
+def test_the_first_guess_of_friction_follows_the_confined_strengths(highest, friction):
+    weak = Targets(3e9, 0.25, 12e6, 1e6, points=((2e6, 22e6), (5e6, highest)))
+    micro = Micro(law="cohesive", targets=weak, radius=1.25e-3, given={})
+    assert micro.named(micro.first)["mu"] == pytest.approx(friction)
 
 
 def table(folder, text):
@@ -279,12 +328,17 @@ def test_a_table_of_confined_strengths(tmp_path):
     found = read_targets(triaxial=path)
     assert found.points == ((10e6, 110e6), (30e6, 180e6), (80e6, 250e6)) and len(found.points) <= MOST_POINTS
     assert found.left_out == "Points of the table at 20, 200 MPa are not fitted."
-    assert read_table(table(tmp_path, "sigma1,sigma3\n5e7,0\n9e7,1e7\n")) == {0.0: 5e7, 1e7: 9e7}
+    for text in ("sigma1,sigma3\n5e7,0\n9e7,1e7\n", "\n sigma3 (MPa);sigma1 (MPa)\n\n0;50\n10;90\n",
+                 "sigma3_kPa\tsigma1_GPa\n0\t0.05\n1e4\t0.09\n"):
+        assert read_table(table(tmp_path, text)) == {0.0: 5e7, 1e7: pytest.approx(9e7)}
 
 
 @pytest.mark.parametrize("text, error", [
     ("", "must be a table with one column sigma3"), ("sigma3\n1\n", "must be a table with one column sigma1"),
     ("sigma3,sigma1\n", "must be a table with at least one row"),
+    ("sigma3;sigma1\n\n1e6;6,1e7\n", "unlike line 3: 1e6,6,1e7"),
+    ("sigma3,sigma1\n1e6,6.05e7\n", "sigma1 = 6.05e+07 Pa at sigma3 = 1e+06 Pa: must be above ucs = 6e+07 by 1 to 35"),
+    ("sigma3,sigma1\n1e6,9.6e7\n", "must be above ucs = 6e+07 by 1 to 35 sigma3"),
     ("sigma3,sigma1\n1e6,a\n", "unlike line 2: 1e6,a"), ("sigma3,sigma1\n1e6\n", "unlike line 2: 1e6"),
     ("sigma3,sigma1\n-1e6,6e7\n", "unlike line 2"), ("sigma3,sigma1\n10,100\n", "unlike line 2: 10,100"),
     ("sigma3,sigma1\n0,9e7\n1e7,2e8\n", "must be within 20 % of ucs = 6e+07"),

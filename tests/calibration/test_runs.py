@@ -10,7 +10,7 @@ from calibration.campaigns.runs import RunFailed, Runs, finished
 from calibration.fitting import rock_fit
 from calibration.fitting.rock_unknowns import Micro
 from calibration.fitting.rock_targets import Targets
-from calibration.fitting.rock_tests import DEAR_PACKINGS, Laboratory
+from calibration.fitting.rock_tests import Laboratory
 from calibration.validation import __main__ as validation
 from rockwear.run.checkpoint import digest
 
@@ -65,7 +65,7 @@ def runs_of_a_fit(law="cohesive", **targets):
 
 def test_a_fit_tests_every_packing_once_and_keeps_the_results_apart():
     runs = runs_of_a_fit()
-    assert len(runs.folders) == 2 * len(rock_fit.SMALL.seeds) + DEAR_PACKINGS == len(set(runs.folders))
+    assert len(runs.folders) == 2 * len(rock_fit.SMALL.seeds) + rock_fit.SMALL.dear == len(set(runs.folders))
     tough = runs_of_a_fit(fracture_toughness=0.9e6).folders
     assert sum("toughness" in folder for folder in tough) == len(rock_fit.SMALL.seeds)
     assert runs_of_a_fit().folders == runs.folders
