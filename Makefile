@@ -9,7 +9,7 @@ TO_SWEEP := python3-distributed
 TO_LINT := python3-flake8
 
 .DEFAULT_GOAL := help
-.PHONY: help setup setup-sweep setup-test run test test-kernels validate bench campaigns campaign-wear \
+.PHONY: help setup setup-sweep setup-test run test test-kernels validate bench fidelity campaigns campaign-wear \
         campaign-uniaxial campaign-grains campaign-rocks campaign-steady campaign-granular \
         lint clean
 
@@ -63,6 +63,9 @@ validate: setup-sweep ## compare with exact solutions and the sources' numbers; 
 
 bench: setup-sweep ## speed against error; figures and numbers in out/bench
 	$(PYTHON) -m calibration.benchmarks $(OUT)/bench
+
+fidelity: setup ## every published number beside ours, from stored results; page calibration/results/fidelity.md
+	$(PYTHON) -m calibration.fidelity
 
 # Each of these runs on a cluster, too: make campaign-steady SCHEDULER=tcp://HOST:PORT
 WHERE := $(if $(SCHEDULER),--scheduler $(SCHEDULER))

@@ -4,6 +4,7 @@ from statistics import mean
 from calibration.campaigns import uniaxial_figures as figures
 from calibration.campaigns.uniaxial import MAIN, ROCKS, SANDSTONE, SCRIPT, SMALL, SOFTENING, TESTS, folder_of
 from calibration.validation.verdicts import Row, Section
+from rockwear.report import published
 
 SEEDS = 1, 2, 3
 SOFT = {case: {**MAIN, **SOFTENING}[case] for case in ("damage 2e11", "damage 5e9", "damage 2e9", "plastic 2e10",
@@ -59,10 +60,13 @@ def sandstone(runs):
 
     rows = [row for name, run in runs.items() for row in balances(name, run)]
     return rows + [
-        Row("Young's modulus", 18, 1e-9 * found("compression", "youngs_modulus"), 1.8, "GPa", source=True),
-        Row("Poisson's ratio", 0.18, found("compression", "poissons_ratio"), 0.02, source=True),
-        Row("compressive strength", 60, 1e-6 * found("compression", "peak_stress"), 6, "MPa", source=True),
-        Row("tensile strength", 7, 1e-6 * found("tension", "peak_stress"), 0.7, "MPa", source=True)], {}
+        Row("Young's modulus", 1e-9 * published.value("p-5.1-e"), 1e-9 * found("compression", "youngs_modulus"), 1.8,
+            "GPa", source=True),
+        Row("Poisson's ratio", published.value("p-5.1-nu"), found("compression", "poissons_ratio"), 0.02, source=True),
+        Row("compressive strength", 1e-6 * published.value("p-5.1-ucs"), 1e-6 * found("compression", "peak_stress"), 6,
+            "MPa", source=True),
+        Row("tensile strength", 1e-6 * published.value("p-5.1-st"), 1e-6 * found("tension", "peak_stress"), 0.7, "MPa",
+            source=True)], {}
 
 
 def slow_run(rock, test, seed, speed):

@@ -13,7 +13,8 @@ SHOWN = {"N/m": ("kN/m", 1e-3, 0.0), "s": ("ms", 1e3, 0.0), "K": ("°C", 1.0, -2
          "m": ("mm", 1e3, 0.0), "m3": ("cm³", 1e6, 0.0), "m3/m": ("mm³/mm", 1e6, 0.0), "bytes": ("MB", 1e-6, 0.0),
          "Pa": ("MPa", 1e-6, 0.0), "-": ("", 1.0, 0.0)}
 """How a unit of the files is shown: unit, factor, and what is added after it."""
-LARGE = {"s": (1.0, "s", 1.0, 0.0), "m": (1.0, "m", 1.0, 0.0), "N": (2e3, "kN", 1e-3, 0.0)}
+LARGE = {"s": (1.0, "s", 1.0, 0.0), "m": (1.0, "m", 1.0, 0.0), "N": (2e3, "kN", 1e-3, 0.0),
+         "Pa": (1e9, "GPa", 1e-9, 0.0)}
 """The same of values from a size on: size, unit, factor, what is added."""
 
 LOOK = Template("""

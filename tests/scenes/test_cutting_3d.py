@@ -88,7 +88,7 @@ def test_no_heat_engine_and_files_for_paraview(worn):
     assert "heat" not in worn.summary["wall_time"]["by_engine"]
     assert len(list((worn.out / "vtk").glob("tool.*.vtp"))) > 2
     page = (worn.out / "report.html").read_text(encoding="utf-8")
-    assert "in perspective" in page and "[Rojek 2003, 13.3]: 0.14 mm" in page
+    assert "in perspective" in page and "[Rojek 2003, 13.3]: 0.142 mm" in page
 
 
 REMOVED = dict(wear_coefficient=3e-8, report="false", **{**BLOCK, "cut_time": 0.05})

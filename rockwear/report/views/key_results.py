@@ -99,7 +99,7 @@ def wear_tiles(run):
     removed, kept = run.result("particles_removed"), keeps_shape(run)
     depth_remark = "that a facet would go back" if kept else "from the new surface to the worn one"
     if has_particles(run) and in_space(run):
-        depth_remark = f"[Rojek 2003, 13.3]: {quantity(published.WORN_DEPTH, 'm')}"
+        depth_remark = f"[Rojek 2003, 13.3]: {quantity(published.value('m-13.3-depth'), 'm')}"
     return [tile(run.result("mass_lost"), "mass lost", percent(run.result("mass_lost"), 1.0),
                  f"{number(removed)} particles removed" if math.isfinite(removed) else ""),
             result(run, "worn volume", "worn_volume", "by the wear law" + ("; the shape is kept" if kept else "")),

@@ -67,7 +67,7 @@ def height_figure(run):
     axes.plot(height, [depth[row == k].max() for k in rows], "o-", color=palette.LARGEST, markersize=4, label="largest")
     axes.plot(height, [depth[row == k].mean() for k in rows], "o-", color=palette.MEAN, markersize=4, label="mean")
     if run.parameter("removal", "") == "none":
-        axes.axhline(MM * published.WORN_DEPTH, color=palette.PUBLISHED, linestyle="--", linewidth=1,
+        axes.axhline(MM * published.value("m-13.3-depth"), color=palette.PUBLISHED, linestyle="--", linewidth=1,
                      label="largest of\n[Rojek 2003, 13.3]")
     axes.set(xlabel="height above the tip / mm", ylabel="worn depth / mm", yscale="log", ylim=(1e-3, None),
              xlim=(0, None))
