@@ -19,8 +19,9 @@ SMALL = dict(width=0.06, height=0.04, radius_min=1.5e-3, radius_max=2.2e-3, toot
 """A test tooth in miniature: every mechanism of the real one in a few seconds."""
 BLOCK = dict(width=0.28, height=0.1, depth=0.16, scale_factor=1, radius=0.012, tool_radius=3e-3, breadth=0.04,
              tooth_height=0.06, tooth_width=0.04, depth_of_cut=0.026, lowering_velocity=0.5, velocity=0.5,
-             cut_time=0.09, snapshot_period=0.03)
-"""A cut as of [Rojek 2003, 13.3] through 340 spheres."""
+             cut_time=0.09, snapshot_period=0.03, Rn=500, Rt=5000)
+"""A cut as of [Rojek 2003, 13.3] through 340 spheres. Bonds are fifty times as strong as there, so that balances are
+seen to close on some joules."""
 BLOCK_OF_TRIANGLES = {**{name: v for name, v in BLOCK.items() if name != "tool_radius"}, "facet": 0.02, "tool_kn": 1e7,
                       "tool_kt": 1e7}
 """The same by a tooth of triangles. Contacts are ten times as stiff as there: overlaps of 12 % of a radius at a sharp

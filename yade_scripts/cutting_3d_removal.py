@@ -2,11 +2,9 @@
 
     yade -n -x yade_scripts/cutting_3d_removal.py [--full] [--name value ...] [--out DIR] [--resume]
 
-As model II (cutting_3d_wear.py), with the source's removal: a particle goes once its worn depth exceeds its diameter.
-That rule passes nothing on to what it uncovers; --removal volume does, so that no wear is lost. The wear constant is
-to test the algorithm in a short run and is no steel's: k / mu = 5e-8 here. With our tooth and depth of cut model II
-wears a hundred times as deep as the source's, so that the source's own 5e-6 (--wear_coefficient 5e-7) takes the tip
-away before the first bond breaks.
+As model II (cutting_3d_wear.py), with the source's wear constant k / mu = 5e-6, which is to test the algorithm in a
+short run and is no steel's, and the source's removal: a particle goes once its worn depth exceeds its diameter. That
+rule passes nothing on to what it uncovers; --removal volume does, so that no wear is lost.
 """
 import runpy
 import sys
@@ -17,7 +15,7 @@ from rockwear.run.main import main
 from rockwear.scenes import cutting_3d
 
 REMOVAL = cutting_3d.groups(
-    velocity=0.4, lowering_velocity=0.4, wear_coefficient=0.1 * 5e-8, removal="depth", wear_period=2,
+    velocity=0.4, lowering_velocity=0.4, wear_coefficient=0.1 * 5e-6, removal="depth", wear_period=2,
     snapshot_period=0.02, record_period=1e-3)
 
 main("cutting_3d_removal", REMOVAL, cutting_3d.make)

@@ -27,7 +27,7 @@ GROUPS = parameters.with_defaults(
     [parameters.BLOCK, parameters.BONDS, parameters.SPACE_TOOL, parameters.CONTACT, parameters.LOWERING,
      parameters.WEAR,
      parameters.HEAT, parameters.ACCURACY, SNAPSHOT, parameters.DENSITY_MAP],
-    kn=1e6, kt=1e6, Rn=500.0, Rt=5000.0, mu=0.5, tool_kn=1e6, tool_kt=1e6, tool_mu=0.1, contact_damping=0.0,
+    kn=1e6, kt=1e6, Rn=9.0, Rt=90.0, mu=0.5, tool_kn=1e6, tool_kt=1e6, tool_mu=0.1, contact_damping=0.0,
     hardness=1.0,
     wear_coefficient=0.0, wear_acceleration=1.0, removal="none", heat=False, damping_period=100, rock_sampling_period=8,
     wear_period=10, record_period=2e-3, heat_period=2e-3,
