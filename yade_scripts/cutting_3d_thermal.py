@@ -14,7 +14,7 @@ from rockwear.run.main import main
 from rockwear.scenes import cutting_3d
 
 THERMAL = cutting_3d.groups(
-    heat=True, hardness=0.0, Rn=500.0, Rt=5000.0, velocity=0.4, lowering_velocity=0.4, wear_coefficient=0.01128, wear_acceleration=1e3,
-    snapshot_period=0.02, record_period=1e-3)
+    heat=True, hardness=0.0, Rn=500.0, Rt=5000.0, velocity=0.4, lowering_velocity=0.4, wear_coefficient=0.01128,
+    wear_acceleration=1e3, snapshot_period=0.02, record_period=1e-3)
 
 main("cutting_3d_thermal", THERMAL, cutting_3d.make)
