@@ -1,1 +1,5 @@
 """The same cut in other codes: specimen, bonds, tool and step are read out of YADE and written for the peer."""
+import numpy as np
+
+STRAIN = np.array([[2e-5, 1e-5], [0.0, -1e-5]])
+"""Displacement gradient of the static test."""

@@ -15,13 +15,13 @@ from statistics import median
 import numpy as np
 
 from calibration import generated
-from calibration.benchmarks.peers import lammps
+from calibration.benchmarks.peers import STRAIN, lammps
 from calibration.campaigns.runs import RunFailed, run_script
 
 TURNS = 5
 CODES = {"rockwear": "YADE with rockwear", "yade": "YADE by itself", "peer": "LAMMPS"}
-STRAIN = np.array([[2e-5, 1e-5], [0.0, -1e-5]])
-"""Displacement gradient of the static test."""
+CLOSE = 0.01
+"""Of the force on the tool, up to which two cuts are one."""
 
 
 def install(folder, packages):
@@ -40,10 +40,95 @@ def install(folder, packages):
     return place
 
 
-def yade(folder, *words):
-    """Run cut.py. -> (rows (n, 4), seconds per step), or without steps the forces of the bonds."""
-    run_script("calibration/benchmarks/peers/cut.py", folder, words)
-    if "0" in words[1::2] and "--steps" in words:
-        return np.load(folder / "stretch.npy")
+def yade(folder, words, **options):
+    """Run cut.py. -> what it wrote into record.json, `rows` as (n, 4)."""
+    run_script("calibration/benchmarks/peers/cut.py", folder,
+               [*words, *(word for name, value in options.items() for word in (f"--{name}", str(value)))])
     found = json.loads((folder / "record.json").read_text(encoding="utf-8"))
-    return np.array(found["rows"]), found["seconds"]
+    return {**found, "rows": np.array(found["rows"])}
+
+
+def agreement(ours, theirs):
+    """How far two records (n, 4) of step, Fx, Fy and intact bonds are one. -> a dict.
+
+    first_break: largest difference of the force on the tool up to the first broken bond, over the largest force so far;
+    together: step, and bonds broken in both, up to which it is below CLOSE; broken: bonds broken at the end.
+    """
+    force, other = ours[:, 1:3], theirs[:, 1:3]
+    scale = np.maximum.accumulate(np.linalg.norm(force, axis=1))
+    difference = np.linalg.norm(force - other, axis=1) / np.maximum(scale, 1e-300)
+    broken = ours[0, 3] - ours[:, 3], theirs[0, 3] - theirs[:, 3]
+    apart = np.flatnonzero(difference > CLOSE)
+    last = (apart[0] if len(apart) else len(ours)) - 1
+    return {"first_break": float(difference[broken[0] == 0].max()), "step": int(ours[last, 0]),
+            "broken_then": [int(b[last]) for b in broken], "largest_then": float(difference[:last + 1].max()),
+            "broken": [int(b[-1]) for b in broken],
+            "mean_force": [float(-f[:, 0].mean()) for f in (force, other)]}
+
+
+def page(result):
+    """Lines of Markdown."""
+    same, cost, model = result["agreement"], result["seconds_a_step"], result["model"]
+    bonds = model["bonds"]
+
+    def over(code):
+        return median(ours / theirs for ours, theirs in zip(cost[code], cost["peer"]))
+
+    rows = [[CODES[code], f"{1e3 * median(cost[code]):.3f}", f"{1e9 * median(cost[code]) / bonds:.0f}",
+             f"{over(code):.2f}", f"{median(cost[code]) * model['steps_a_metre'] / 3600:.2f}"] for code in CODES]
+    return ["# The same cut in LAMMPS", "",
+            f"{model['discs']} discs, {bonds} bonds, {model['tool']} particles of the tool at {model['velocity']:g} m/s, "
+            f"{result['steps']} steps of {1e9 * model['time_step']:.1f} ns; peer: {result['peer']}.", "",
+            *generated.table(["agreement with LAMMPS", "rockwear and LAMMPS"], [
+                ["forces of bonds after a uniform strain: largest difference over the largest force",
+                 f"{result['stretch']:.1e}"],
+                ["force on the tool up to the first broken bond", f"{same['first_break']:.1e}"],
+                [f"bonds broken up to where the force differs by {CLOSE:g}: step {same['step']}",
+                 " and ".join(map(str, same["broken_then"]))],
+                ["bonds broken at the end", " and ".join(map(str, same["broken"]))],
+                ["mean cutting force, kN/m", " and ".join(f"{1e-3 * f:.0f}" for f in same["mean_force"])]]),
+            f"Processor time, {len(cost['peer'])} turns, medians; the ratio is of the runs of one turn.", "",
+            *generated.table(["code", "ms per step", "ns per bond and step", "over LAMMPS", "hours per metre of cut"],
+                             rows)]
+
+
+def compare(folder, words):
+    """Run all and write. -> the page's text."""
+    folder.mkdir(parents=True, exist_ok=True)
+    place = install(folder, lammps.PACKAGES)
+    yade(folder / "still", words, steps=0)
+    model = dict(np.load(folder / "still/model.npz"))
+    ours = np.load(folder / "still/stretch.npy")
+    theirs = lammps.stretched(place, model, folder / "peer", STRAIN)
+    cost = {code: [] for code in CODES}
+    for _ in range(TURNS):
+        record = yade(folder / "rockwear", words)
+        cost["rockwear"].append(record["seconds"])
+        cost["yade"].append(yade(folder / "yade", words, engines="dead")["seconds"])
+        rows, seconds = lammps.cut(place, model, folder / "peer", steps=record["steps"], sample=record["sample"])
+        cost["peer"].append(seconds)
+    result = {"peer": " ".join(lammps.PACKAGES), "steps": record["steps"], "seconds_a_step": cost,
+              "stretch": float(abs(ours - theirs).max() / abs(ours).max()), "agreement": agreement(record["rows"], rows),
+              "model": {"discs": len(model["radii"]), "bonds": len(model["pairs"]), "tool": len(model["tool_radii"]),
+                        "velocity": float(model["tool_velocity"]), "time_step": float(model["time_step"]),
+                        "steps_a_metre": 1 / float(model["tool_velocity"] * model["time_step"])}}
+    (folder / "peers.json").write_text(json.dumps(result, indent=1), encoding="utf-8")
+    generated.record(folder / "peers.json")
+    return generated.write_page(folder / "peers.md", page(result))
+
+
+def main(words):
+    """The command. -> exit code."""
+    if len(words) < 2 or words[0] != "lammps":
+        print(__doc__, file=sys.stderr)
+        return 2
+    try:
+        print(compare(Path(words[1]), words[2:]))
+    except (lammps.PeerFailed, RunFailed) as error:
+        print(f"peers: {error}", file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

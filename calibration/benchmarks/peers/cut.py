@@ -18,6 +18,7 @@ from types import SimpleNamespace
 import numpy as np
 from yade import O, PyRunner
 
+from calibration.benchmarks.peers import STRAIN
 from rockwear.engines import base
 from rockwear.kernels.parameter import Parameter, choice, integer
 from rockwear.model.rock import Arranged
@@ -35,8 +36,6 @@ DEFAULTS = dict(width=0.06, height=0.035, radius_min=RADIUS, radius_max=RADIUS, 
 OPTIONS = (Parameter("steps", 6000, "", integer(0), "steps of the cut; 0: a uniform strain instead"),
            Parameter("sample", 20, "steps", integer(1), "between samples of forces and bonds"),
            Parameter("engines", "alive", "", choice("alive", "dead"), "Python engines; dead: YADE by itself"))
-STRAIN = np.array([[2e-5, 1e-5], [0.0, -1e-5]])
-"""Displacement gradient of the specimen without steps."""
 CANONICAL = 1000
 """Steps between canonical points."""
 
@@ -122,9 +121,9 @@ def main():
     np.savez(folder / "model.npz", **model(scene))
     if not values["steps"]:
         np.save(folder / "stretch.npy", stretched(scene))
-    else:
-        rows, seconds = cut(scene, values)
-        (folder / "record.json").write_text(json.dumps({"rows": rows, "seconds": seconds}), encoding="utf-8")
+    rows, seconds = cut(scene, values) if values["steps"] else ([], 0.0)
+    record = {"rows": rows, "seconds": seconds, "steps": scene.step - 1, "sample": values["sample"]}
+    (folder / "record.json").write_text(json.dumps(record), encoding="utf-8")
     os._exit(0)
 
 

@@ -96,12 +96,12 @@ CUT = """thermo {sample}
 run {steps}
 """
 STRETCH = """compute ends all property/local batom1 batom2
-compute bond all bond/local force
+compute bond all bond/local force dist
 run 0
 variable dx atom {xx:.17g}*x+{xy:.17g}*y
 variable dy atom {yy:.17g}*y
 displace_atoms all move v_dx v_dy 0 units box
-dump bonds all local 1 stretch.txt c_ends[1] c_ends[2] c_bond
+dump bonds all local 1 stretch.txt c_ends[1] c_ends[2] c_bond[1] c_bond[2]
 dump_modify bonds format float %.17g
 run 0
 """
@@ -140,7 +140,7 @@ def cut(environment, model, folder, *, steps, sample):
     """The cut. -> (rows (n, 4) like those of cut.py, seconds of processor time per step)."""
     write(model, folder, CUT, steps=steps, sample=sample)
     log = run(environment, folder)
-    rows = np.array([line.split() for line in re.findall(r"^ *\d+(?: +\S+){3} *$", log, re.MULTILINE)], float)
+    rows = np.array([line.split() for line in re.findall(r"^ *\d+(?: +[-+.e\d]+){3} *$", log, re.MULTILINE)], float)
     rows[:, 3] /= 2  # each bond counts at both of its atoms
     loop, = re.findall(r"^Loop time of (\S+)", log, re.MULTILINE)
     share, = re.findall(r"^(\S+)% CPU use", log, re.MULTILINE)
@@ -153,5 +153,5 @@ def stretched(environment, model, folder, strain):
     run(environment, folder)
     rows = np.loadtxt(folder / "stretch.txt", skiprows=9)
     ends = np.sort(rows[:, :2].astype(int) - 1, axis=1)
-    # The pairs of the model are in this order too.
-    return -rows[np.lexsort((ends[:, 1], ends[:, 0])), 2]
+    # LAMMPS multiplies the force of this style by the length once more. The pairs of the model are in this order too.
+    return -(rows[:, 2] / rows[:, 3])[np.lexsort((ends[:, 1], ends[:, 0]))]

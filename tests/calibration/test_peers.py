@@ -1,0 +1,85 @@
+"""What a peer is given is what YADE has; what it gives back is compared as it should be."""
+import re
+
+import numpy as np
+import pytest
+
+from calibration.benchmarks.peers import STRAIN, lammps
+from calibration.benchmarks.peers import __main__ as peers
+from tests.running import ROOT, run_script
+
+COLUMNS, ROWS, RADIUS = 14, 8, 0.75e-3
+SMALL = ["--width", (2 * COLUMNS + 1.5) * RADIUS, "--height", (2.5 + (ROWS - 1) * 3**0.5) * RADIUS,
+         "--tooth_height", 9e-3, "--tooth_width", 8e-3, "--start_up", 1e-3, "--steps", 0]
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    out = tmp_path_factory.mktemp("peers")
+    done = run_script(ROOT / "calibration/benchmarks/peers/cut.py", *map(str, SMALL), "--out", str(out))
+    assert done.code == 0, done.stderr
+    lammps.write(dict(np.load(out / "model.npz")), out, lammps.CUT, steps=100, sample=10)
+    return out
+
+
+def section(text, title):
+    """(n, k) numbers of a section of a data file."""
+    lines = re.split(rf"^{title}.*\n\n", text, flags=re.MULTILINE)[1].split("\n\n")[0].strip().split("\n")
+    return np.array([line.split() for line in lines], float)
+
+
+def test_the_peer_has_the_discs_and_bonds_of_the_lattice(folder):
+    text = (folder / "model.data").read_text(encoding="utf-8")
+    atoms, bonds = section(text, "Atoms"), section(text, "Bonds")
+    rock = atoms[atoms[:, 2] != lammps.TOOL]
+    assert len(rock) == COLUMNS * ROWS
+    assert len(bonds) == ROWS * (COLUMNS - 1) + (ROWS - 1) * (2 * COLUMNS - 1)
+    places = atoms[:, 5:7]
+    ends = bonds[:, 2:].astype(int) - 1
+    assert np.linalg.norm(np.subtract(*places[ends.T]), axis=1) == pytest.approx(2 * RADIUS, rel=1e-12)
+    # All discs together weigh what the box of rock does: 2500 kg/m3.
+    masses = rock[:, 4] * np.pi / 6 * rock[:, 3]**3
+    assert masses == pytest.approx(2500 * SMALL[1] * SMALL[3] / len(rock), rel=1e-9)
+    assert (rock[rock[:, 6] < 1.05 * RADIUS, 2] == lammps.FIXED).all() and (rock[:, 2] == lammps.FREE).any()
+    tool = atoms[atoms[:, 2] == lammps.TOOL]
+    assert len(tool) and (tool[:, 3] > 0.8e-3).all() and (tool[:, 3] < 1.04e-3).all()
+
+
+def test_the_peer_has_the_constants_of_the_bonds(folder):
+    kinds = np.array([line.split()[1:] for line in (folder / "bonds.in").read_text(encoding="utf-8").splitlines()],
+                     float)
+    number = section((folder / "model.data").read_text(encoding="utf-8"), "Bonds")[:, 1].astype(int) - 1
+    assert (kinds[:, 1] == 20e9).all() and (kinds[:, 2] == 8e9).all() and (kinds[:, 3:5] == 0).all()
+    Fcr, Fcs = kinds[number, 5:7].T
+    assert Fcs / Fcr == pytest.approx(1e12 / 3e4)
+    # Strengths scatter about Rn; a Weibull distribution of modulus 4 has a coefficient of variation of 0.28.
+    assert Fcr.mean() == pytest.approx(3e4, rel=0.06) and 0.2 < Fcr.std() / Fcr.mean() < 0.36
+    script = (folder / "cut.in").read_text(encoding="utf-8")
+    assert "hooke 20000000000 0 tangential linear_history 8000000000 0 0.83899999999999997" in script
+    assert script.count("hooke 90000000000 0 tangential linear_history 90000000000 0 0.29999999999999999") == 2
+    assert "move linear 4 0 0" in script
+
+
+def test_the_force_of_a_strained_bond_is_exact(folder):
+    model = np.load(folder / "model.npz")
+    i, j = model["pairs"].T
+    delta = model["positions"][j] - model["positions"][i]
+    exact = 20e9 * (np.linalg.norm(delta + delta @ STRAIN.T, axis=1) - np.linalg.norm(delta, axis=1))
+    # Differences of places of 1e-2 m are known to 1e-18 m.
+    assert np.load(folder / "stretch.npy") == pytest.approx(exact, abs=20e9 * 1e-17)
+
+
+def test_agreement_ends_where_the_forces_part():
+    ours = np.array([[0, 0, 0, 9], [10, -100, 10, 9], [20, -200, 10, 8], [30, -200, 10, 7], [40, 0, 0, 3]], float)
+    theirs = ours + [[0, 0, 0, 0], [0, 0.1, 0, 0], [0, 1, 0, 0], [0, 20, 0, -1], [0, 0, 0, -2]]
+    found = peers.agreement(ours, theirs)
+    assert found["first_break"] == pytest.approx(0.1 / np.hypot(100, 10))
+    assert found["step"] == 20 and found["broken_then"] == [1, 1] and found["broken"] == [6, 8]
+    assert found["mean_force"] == pytest.approx([100, 95.78])
+
+
+def test_a_peer_that_cannot_be_installed_is_one_line(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(peers.sys, "executable", str(tmp_path / "nowhere"))
+    assert peers.main(["lammps", str(tmp_path)]) == 1
+    said = capsys.readouterr().err
+    assert said.startswith("peers: ") and said.count("\n") == 1
