@@ -77,8 +77,8 @@ def page(result):
     rows = [[CODES[code], f"{1e3 * median(cost[code]):.3f}", f"{1e9 * median(cost[code]) / bonds:.0f}",
              f"{over(code):.2f}", f"{median(cost[code]) * model['steps_a_metre'] / 3600:.2f}"] for code in CODES]
     return ["# The same cut in LAMMPS", "",
-            f"{model['discs']} discs, {bonds} bonds, {model['tool']} particles of the tool at {model['velocity']:g} m/s, "
-            f"{result['steps']} steps of {1e9 * model['time_step']:.1f} ns; peer: {result['peer']}.", "",
+            f"{model['discs']} discs, {bonds} bonds, {model['tool']} particles of the tool at {model['velocity']:g} "
+            f"m/s, {result['steps']} steps of {1e9 * model['time_step']:.1f} ns; peer: {result['peer']}.", "",
             *generated.table(["agreement with LAMMPS", "rockwear and LAMMPS"], [
                 ["forces of bonds after a uniform strain: largest difference over the largest force",
                  f"{result['stretch']:.1e}"],
@@ -108,7 +108,8 @@ def compare(folder, words):
         rows, seconds = lammps.cut(place, model, folder / "peer", steps=record["steps"], sample=record["sample"])
         cost["peer"].append(seconds)
     result = {"peer": " ".join(lammps.PACKAGES), "steps": record["steps"], "seconds_a_step": cost,
-              "stretch": float(abs(ours - theirs).max() / abs(ours).max()), "agreement": agreement(record["rows"], rows),
+              "stretch": float(abs(ours - theirs).max() / abs(ours).max()),
+              "agreement": agreement(record["rows"], rows),
               "model": {"discs": len(model["radii"]), "bonds": len(model["pairs"]), "tool": len(model["tool_radii"]),
                         "velocity": float(model["tool_velocity"]), "time_step": float(model["time_step"]),
                         "steps_a_metre": 1 / float(model["tool_velocity"] * model["time_step"])}}

@@ -29,10 +29,10 @@ from rockwear.scenes.cut import Cut
 from rockwear.scenes.programme import Cycles
 
 RADIUS = 0.75e-3
-DEFAULTS = dict(width=0.06, height=0.035, radius_min=RADIUS, radius_max=RADIUS, kt=8e9, Rn=3e4, Rt=1e12, weibull_modulus=4,
-                contact_damping=0.0, background_damping=0.0, removal="none", wear_acceleration=0.0, heat=False,
-                tooth_height=0.03, tooth_width=0.02, rake=10.0, clearance=10.0, tip_radius=2e-3, approach=2e-5,
-                depth_of_cut=0.006, start_up=0.01, cycles=0)
+DEFAULTS = dict(width=0.06, height=0.035, radius_min=RADIUS, radius_max=RADIUS, kt=8e9, Rn=3e4, Rt=1e12,
+                weibull_modulus=4, contact_damping=0.0, background_damping=0.0, removal="none", wear_acceleration=0.0,
+                heat=False, tooth_height=0.03, tooth_width=0.02, rake=10.0, clearance=10.0, tip_radius=2e-3,
+                approach=2e-5, depth_of_cut=0.006, start_up=0.01, cycles=0)
 OPTIONS = (Parameter("steps", 6000, "", integer(0), "steps of the cut; 0: a uniform strain instead"),
            Parameter("sample", 20, "steps", integer(1), "between samples of forces and bonds"),
            Parameter("engines", "alive", "", choice("alive", "dead"), "Python engines; dead: YADE by itself"))
@@ -42,10 +42,12 @@ CANONICAL = 1000
 
 def lattice(v):
     """The rock."""
-    columns, rows = int((v.width / v.radius_max - 1) / 2), int((v.height / v.radius_max - 2) / math.sqrt(3)) + 1
+    columns = int((v.width / v.radius_max - 1) / 2)
+    rows = int((v.height / v.radius_max - 2) / math.sqrt(3)) + 1
     column, row = np.meshgrid(np.arange(columns), np.arange(rows))
     places = 1 + np.column_stack([(2 * column + row % 2).ravel(), (math.sqrt(3) * row).ravel()])
-    return Arranged(positions=v.radius_max * places, radius=v.radius_max, width=v.width, height=v.height, density=v.rock_density)
+    return Arranged(positions=v.radius_max * places, radius=v.radius_max, width=v.width, height=v.height,
+                    density=v.rock_density)
 
 
 def make(values):

@@ -74,9 +74,9 @@ read_data model.data extra/special/per/atom 20
 bond_style bpm/rotational smooth no
 include bonds.in
 pair_style granular
-pair_coeff * * hooke {kn:.17g} 0 tangential linear_history {kt:.17g} 0 {mu:.17g} damping velocity
-pair_coeff {free} {tool} hooke {tool_kn:.17g} 0 tangential linear_history {tool_kt:.17g} 0 {tool_mu:.17g} damping velocity
-pair_coeff {tool} {fixed} hooke {tool_kn:.17g} 0 tangential linear_history {tool_kt:.17g} 0 {tool_mu:.17g} damping velocity
+pair_coeff * * {of_rock}
+pair_coeff {free} {tool} {of_tool}
+pair_coeff {tool} {fixed} {of_tool}
 neighbor {skin:.17g} bin
 neigh_modify delay 0 every 1 check yes exclude type {tool} {tool}
 group free type {free}
@@ -107,12 +107,17 @@ run 0
 """
 
 
+def contact(kn, kt, mu):
+    """Coefficients of a contact without dashpots."""
+    return f"hooke {kn:.17g} 0 tangential linear_history {kt:.17g} 0 {mu:.17g} damping velocity"
+
+
 def script(model, job, **options):
     """The text of the input script. job: CUT with steps and sample, or STRETCH with components of the strain."""
-    names = "mu", "tool_kn", "tool_kt", "tool_mu", "tool_velocity", "time_step"
     return (SCRIPT + job).format(
-        **{name: float(model[name]) for name in names}, kn=model["kn"][0], kt=model["kt"][0], free=FREE, tool=TOOL,
-        fixed=FIXED, skin=SKIN * model["radii"].min(), **options)
+        of_rock=contact(model["kn"][0], model["kt"][0], model["mu"]), free=FREE, tool=TOOL, fixed=FIXED,
+        of_tool=contact(model["tool_kn"], model["tool_kt"], model["tool_mu"]), skin=SKIN * model["radii"].min(),
+        tool_velocity=model["tool_velocity"], time_step=model["time_step"], **options)
 
 
 def write(model, folder, job, **options):
