@@ -20,7 +20,7 @@ import numpy as np
 from calibration import generated
 from calibration.benchmarks import cut_cost
 from calibration.benchmarks import heat as heat_study
-from calibration.benchmarks import loading_speed
+from calibration.benchmarks import loading_speed, scale
 from calibration.campaigns.runs import RunFailed, Runs, run_script
 from rockwear.report import plots
 
@@ -197,7 +197,8 @@ def main(folder):
     (folder / "bench.json").write_text(json.dumps(result, indent=1), encoding="utf-8")
     generated.record(folder / "speed_against_error.png", folder / "bench.json")
     print(generated.write_page(folder / "bench.md", [*tables(result), *law_costs(folder), *cut_cost.curve(folder),
-                                                     *loading_speed.curve(folder), *heat_study.curve(folder)]))
+                                                     *loading_speed.curve(folder), *heat_study.curve(folder),
+                                                     *scale.curve(folder)]))
 
 
 if __name__ == "__main__":
