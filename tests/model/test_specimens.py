@@ -38,6 +38,23 @@ def test_graded_rock_is_coarse_below_and_its_bonds_are_stronger_in_proportion():
     assert np.all(uniform.strength_factor == 1)
 
 
+def test_neighbours_of_a_large_specimen_are_near_in_memory(monkeypatch):
+    small = rock.Specimen(seed=1, grading_factor=4, **SPECIMEN)
+    monkeypatch.setattr(rock, "ORDERED", 500)
+    large = rock.Specimen(seed=1, grading_factor=4, **SPECIMEN)
+
+    def rows(specimen):
+        return np.sort(np.rec.fromarrays([*specimen.positions.T, specimen.radii, specimen.scale, specimen.masses]))
+
+    def bonds(specimen):
+        ends = np.sort(specimen.positions[specimen.pairs, 0], axis=1)
+        return ends[np.lexsort(ends.T)]
+
+    assert large.count > 500 and (rows(large) == rows(small)).all() and (bonds(large) == bonds(small)).all()
+    apart = [np.median(np.ptp(specimen.pairs, axis=1)) for specimen in (small, large)]
+    assert apart[0] > 0.2 * small.count and apart[1] < 0.02 * small.count
+
+
 def test_a_large_specimen_is_tiled_and_equally_dense_everywhere(monkeypatch):
     monkeypatch.setattr(rock, "TILE", 2100)
     specimen = rock.Specimen(seed=1, **{**SPECIMEN, "width": 0.165, "height": 0.11})

@@ -33,7 +33,7 @@ DEFAULTS = dict(width=0.06, height=0.035, radius_min=RADIUS, radius_max=RADIUS, 
                 weibull_modulus=4, contact_damping=0.0, background_damping=0.0, removal="none", wear_acceleration=0.0,
                 heat=False, tooth_height=0.03, tooth_width=0.02, rake=10.0, clearance=10.0, tip_radius=2e-3,
                 approach=2e-5, depth_of_cut=0.006, start_up=0.01, cycles=0)
-OPTIONS = (Parameter("steps", 6000, "", integer(0), "steps of the cut; 0: a uniform strain instead"),
+OPTIONS = (Parameter("steps", 3000, "", integer(0), "steps of the cut; 0: a uniform strain instead"),
            Parameter("sample", 20, "steps", integer(1), "between samples of forces and bonds"),
            Parameter("engines", "alive", "", choice("alive", "dead"), "Python engines; dead: YADE by itself"))
 CANONICAL = 1000

@@ -2,7 +2,8 @@
 
 `write` turns the model that cut.py has read out of YADE into a data file and an input script. A bond of
 bpm/rotational breaks when Fn / Fcr + |Ft| / Fcs reaches 1; with an endless Fcs = Rt that is YADE's Fn = Rn. Twist and
-bending have no stiffness, and there is no smoothing and no dashpot.
+bending have no stiffness, and there is no smoothing and no dashpot. Bonds that shear cannot break may turn without
+limit, and there bpm/rotational of this version gains energy at once, at half the step too: cuts must end before.
 """
 import math
 import re
