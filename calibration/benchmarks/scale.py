@@ -3,7 +3,7 @@
     python3 -m calibration.benchmarks.scale DIR        (part of make bench)
 
 Runs calibration/benchmarks/scale_block.py, one process at a time except for the jobs side by side, all cases of a turn
-one after the other. Writes scale.json and scale.png into DIR.
+one after the other; blocks that DIR has are kept. Writes scale.json and scale.png into DIR.
 """
 import json
 import math
@@ -38,8 +38,9 @@ def words(particles, dimensions=2, **options):
 
 
 def block(folder, **options):
-    """Run one block. -> what it writes."""
-    run_script(SCRIPT, folder, words(**options))
+    """Run one block, unless the folder has it. -> what it writes."""
+    if not (folder / "scale_block.json").exists():
+        run_script(SCRIPT, folder, words(**options))
     return read(folder)
 
 
@@ -72,7 +73,7 @@ def measure(folder):
     for turn in range(TURNS):
         for name, options in cases().items():
             if not turn or options["particles"] < LARGE:
-                found[name].append(block(folder / "scale" / name, **options))
+                found[name].append(block(folder / f"scale/{turn}-{name}", **options))
     return {name: {**runs[0], "ns": 1e9 * median(run["cpu"] / run["bonds"] for run in runs)}
             for name, runs in found.items()}
 

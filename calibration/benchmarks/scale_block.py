@@ -26,7 +26,8 @@ from rockwear.run.main import COMMON
 from rockwear.scenes import yade_scene
 
 RADIUS, GAP, DENSITY, VELOCITY = 1e-3, 1e-4, 2500.0, 10.0
-LAW = ElasticBrittle(kn=20e9, kt=8e9, Rn=1e30, Rt=1e30, mu=0.5)
+STIFFNESS = {2: 20e9, 3: 50e6}
+"""N/m; discs 1 m thick are 400 times as heavy as spheres."""
 TIME_STEP = 1e-7
 WARM_UP = 5
 """Steps."""
@@ -61,12 +62,15 @@ def block(v):
 
 def build(rock, v):
     """Put the rock into YADE and set it in motion."""
-    yade_scene.put_rock_materials(mu=LAW.mu)
+    kn = STIFFNESS[v["dimensions"]]
+    law = ElasticBrittle(kn=kn, kt=0.4 * kn, Rn=1e30, Rt=1e30, mu=0.5)
+    rock.bond(law)
+    yade_scene.put_rock_materials(mu=law.mu)
     yade_scene.put_rock(rock)
-    yade_scene.put_loop(rock=LAW)
+    yade_scene.put_loop(rock=law)
     if v["verlet"]:
         access.yade_engine(InsertionSortCollider).verletDist = v["verlet"] * float(rock.radii.min())
-    yade_scene.make_bonds(rock, yade_scene.bonds_engine(rock, LAW, lambda: 0.0))
+    yade_scene.make_bonds(rock, yade_scene.bonds_engine(rock, law, lambda: 0.0))
     O.dt = TIME_STEP
     waves = VELOCITY * np.sin(np.pi * rock.positions / (20 * RADIUS))
     for body, wave in enumerate(waves.tolist()):
@@ -84,7 +88,6 @@ def main():
     servers.close()
     v = parameters.read([*GROUPS, COMMON], sys.argv[1:])
     rock = block(v)
-    rock.bond(LAW)
     before = resident()
     build(rock, v)
     O.run(WARM_UP, True)
