@@ -20,7 +20,7 @@ from calibration.campaigns.runs import ROOT, RunFailed, command, run_script
 from rockwear.report import plots
 
 SCRIPT = "calibration/benchmarks/scale_block.py"
-SIZES = {2: (2000, 20_000, 92_000), 3: (20_000, 100_000)}
+SIZES = {2: (2000, 20_000, 92_000), 3: (2000, 20_000)}
 ORDERS = "scattered", "curve"
 VERLET = 0.1, 0.25, 0.5, 1.0
 VERLET_SIZE = THREADS_SIZE = 20_000
