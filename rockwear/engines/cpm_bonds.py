@@ -3,32 +3,21 @@ import math
 from collections import namedtuple
 
 import numpy as np
-from yade import O, Vector3
+from yade import O
 
 from rockwear.engines.bond_log import BROKEN, INTACT, SEPARATED, BondLog, Crack
+from rockwear.engines.memory import Vectors
 
 LOOK_PERIOD = 10
-"""Steps between looks at a bond that has slipped or softened."""
-SHARES = 4
-"""The others are looked at so many times more rarely."""
+"""Steps between looks at the slip of all bonds; its work is sampled twice as often."""
+DAMAGE_PERIODS = 4
+"""Damage by tension is looked at so many times more rarely."""
 STRAIGHT = 10
 """Points on the path that a bond is taken to have come before the first look that finds it softened or slipped."""
-ZERO = Vector3.Zero
 SPENT = 1.0 - 1e-6
 """Damage of a bond that slip has broken: YADE keeps it, as a contact with friction, until it opens."""
 UNBREAKABLE = 1e29
 """Strength (N) from which a bond is not to break at all."""
-
-
-def _in_plane(vector, normal):
-    """A vector turned into the plane of a contact, nearly in which it lies."""
-    tangential = vector - normal * normal.dot(vector)
-    length = tangential.norm()
-    return tangential * (vector.norm() / length) if length > 0.0 else tangential
-
-
-def _turn_of(n, turns):
-    return turns[n % len(turns)]
 
 
 def _slip_before(law, contact):
@@ -42,58 +31,69 @@ def _slip_before(law, contact):
     return work - 0.5 * before**2 / law.kt
 
 
-def _lost_by_damage(law, contact, omega):
-    """(J of the normal force, J of slip) that a bond dissipates in the next step, where its damage is raised to omega
-    and its forces fall to what the law then allows."""
-    phys = contact.phys
-    Fn, shear, left = -phys.normalForce.dot(contact.geom.normal), contact.shear_force.norm(), 1.0 - phys.omega
-    kept = (1.0 - omega) / left if Fn > 0.0 else 1.0
-    limit = law.shear_limit(omega, kept * Fn)
-    return 0.5 * Fn**2 * (1.0 - kept) / (law.kn * left), 0.5 * max(shear**2 - limit**2, 0.0) / law.kt
+_Contact = namedtuple("_Contact", "interaction geom phys")
+"""A bond in YADE. As long as these are kept, its vectors lie where they do."""
+
+_VECTORS = {"normal": lambda contact: contact.geom.normal, "increment": lambda contact: contact.geom.shearInc,
+            "normal_force": lambda contact: contact.phys.normalForce,
+            "shear_force": lambda contact: contact.phys.shearForce,
+            "strain": lambda contact: contact.phys.epsT, "slipped": lambda contact: contact.phys.epsTPl}
+"""Vectors of a bond that looks read, and partly write, for many bonds at once."""
 
 
-_Contact = namedtuple("_Contact", "interaction geom phys slipped shear_force")
-"""A bond in YADE, with epsTPl and shearForce. YADE gives these by reference: they are what they are now at any time."""
+def _dot(a, b):
+    return np.einsum("ij,ij->i", a, b)
 
 
-def _turn(contact):
-    """Turn the slipped part of the strain into the plane of the contact: the total strain less the elastic one."""
-    phys, slipped = contact.phys, contact.slipped
-    elastic = _in_plane(contact.shear_force, contact.geom.normal) / (-phys.ks * phys.refLength)
-    # In place: this is YADE's own vector.
-    slipped += phys.epsT - elastic - slipped
+def _take_slip(vectors, numbers, stiffness):
+    """Take the slip out of YADE's shear strains of bonds and leave the elastic part, in the plane of the contact.
+    stiffness: N, shear force over strain. -> (k,) the slip, a strain."""
+    normal, force = vectors.read("normal", numbers), vectors.read("shear_force", numbers)
+    elastic = force - normal * _dot(force, normal)[:, None]
+    length = np.sqrt(_dot(elastic, elastic))
+    # As long as the force, nearly in the plane of which it lies.
+    elastic *= (np.sqrt(_dot(force, force)) / np.where(length > 0.0, -length * stiffness, 1.0))[:, None]
+    slip = vectors.read("strain", numbers) - elastic
+    vectors.write("strain", numbers, elastic)
+    vectors.write("slipped", numbers, 0.0)
+    return np.sqrt(_dot(slip, slip))
 
 
 class CpmBonds(BondLog):
     """All bonds of the rock under a law that YADE's concrete model (Law2_ScGeom_CpmPhys_Cpm) is.
 
-    The C++ law gives every force. A look reads the damage omega and the slip of a bond, for the crack log and for the
-    energy. What tension dissipates follows from omega alone. The work of slip is a sample: that of one step, the force
-    of its two ends times what the bond slipped, counts for all steps between two looks. (Forces of looks ten steps
-    apart, half a period of a bond, overstate it, because bonds slip while their force is low.) Bonds have their turns
-    one after the other, bond n at steps n, n + period, ..., so that samples of many bonds even out and every step costs
-    the same. Bonds that have neither softened nor slipped are looked at more rarely; what one slipped before it
-    is found to have, the law tells from a straight path to where it is found.
+    The C++ law gives every force. A look reads the damage omega and the slip of all bonds, for the crack log and for
+    the energy. What tension dissipates follows from omega alone. The work of slip is a sample: that of one step, the
+    force of its two ends times what the bonds slipped, counts for all steps between two samples. (Forces of looks ten
+    steps apart, half a period of a bond, overstate it, because bonds slip while their force is low.) What a bond
+    slipped before it is found to have, the law tells from a straight path to where it is found.
 
     C++ knows no damage by slip: a look counts what the bond slipped since the last one and raises the damage by it. A
     bond that slip has broken stays a contact in YADE until it opens; what it slips until then is booked here too.
 
     C++ erases a bond that has opened to its end; if its particles meet again, that is a plain contact, by their radii
     (which must not overlap when they are bonded). YADE turns the total shear strain of a bond with the contact, but not
-    its plastic part: a look turns that part too. Neither damage nor strains are in YADE's saved scenes: `state` holds
-    them, and `erase_separated`, at every canonical point, sets the damage from omega, which is all that a restart
-    knows.
+    its plastic part: a look takes the slip so far out of both. Neither damage nor strains are in YADE's saved scenes:
+    `state` holds them, and `erase_separated`, at every canonical point, sets the damage from omega, which is all that a
+    restart knows.
 
-    period: steps between two looks at a bond; 1: all bonds in every step. The engine itself is visited in every step.
+    Vectors are read at once, by engines.memory: looks at single bonds cost a third of YADE's own time.
+
+    period: steps between two looks; 1: in every step. The engine itself is visited in every step.
     """
 
     def __init__(self, *, period=LOOK_PERIOD, **common):
         super().__init__(period=1, **common)
-        self.between_looks = period
-        self.between_quiet = period * SHARES if period > 1 else 1
-        self.dissipated, self.by_slip = np.zeros(len(self.pairs)), np.zeros(len(self.pairs))
-        self.slip_taken, self.strains = np.zeros(len(self.pairs)), None
-        self.quiet, self.active, self.forces_before = [], [], {}
+        count = len(self.pairs)
+        self.between_looks, self.between_samples = period, period // 2 if period % 2 == 0 else period
+        self.between_damage = period * DAMAGE_PERIODS if period > 1 else 1
+        self.dissipated, self.by_slip, self.slip_taken = np.zeros(count), np.zeros(count), np.zeros(count)
+        self.omega, self.active = np.zeros(count), np.zeros(count, bool)
+        """Damage at the last look; whether the bond had slipped or softened by then."""
+        self.kn, self.kt, self.Rt, self.mu, self.slip_end = (
+            np.array([getattr(law, name) for law in self.laws]) for name in ("kn", "kt", "Rt", "mu", "slip_end"))
+        self.contacts, self.lengths, self.strains = {}, np.zeros(count), None
+        self.vectors = Vectors(count, _VECTORS)
 
     @staticmethod
     def reference_overlap(phys):
@@ -114,107 +114,137 @@ class CpmBonds(BondLog):
 
     def connect(self):
         """Find the interactions of the scene that is in O now, and give them the strains of a restart."""
-        # By turn: {number: contact} and {number: (contact, omega and slipped part of the strain at the last look)}.
-        self.quiet = [{} for _ in range(self.between_quiet)]
-        self.active = [{} for _ in range(self.between_looks)]
+        self.contacts = {}
         self._follow(np.flatnonzero(self.status != SEPARATED))
         if self.strains is not None:
-            self._set_strains(*self.strains)
+            numbers, omegas, strains, slipped = self.strains
+            for n, omega in zip(numbers.tolist(), omegas.tolist()):
+                if omega:
+                    self.contacts[n].phys.setDamage(omega)
+            self.vectors.write("strain", numbers, strains)
+            self.vectors.write("slipped", numbers, slipped)
             self.strains = None
         self._prepare()
 
     def _take_up(self, numbers):
-        self.dissipated[numbers] = self.by_slip[numbers] = self.slip_taken[numbers] = 0.0
+        for array in (self.dissipated, self.by_slip, self.slip_taken, self.omega):
+            array[numbers] = 0.0
+        self.active[numbers] = False
         self._follow(numbers)
 
     def _follow(self, numbers):
         for n in numbers.tolist():
             interaction = O.interactions[tuple(self.pairs[n].tolist())]
-            phys = interaction.phys
-            _turn_of(n, self.quiet)[n] = _Contact(interaction, interaction.geom, phys, phys.epsTPl, phys.shearForce)
-
-    def _set_strains(self, omegas, totals, plastics):
-        for n, omega, total, plastic in zip(sorted(self._intact()), omegas.tolist(), totals.tolist(),
-                                            plastics.tolist()):
-            contact = _turn_of(n, self.quiet)[n]
-            strain = contact.phys.epsT
-            for k in range(3):
-                strain[k], contact.slipped[k] = total[k], plastic[k]
-            if omega or any(plastic):
-                contact.phys.setDamage(omega)
-                self._keep(n, _turn_of(n, self.quiet).pop(n))
-
-    def _keep(self, n, contact):
-        """Remember the damage and slip of an active bond as they are now."""
-        _turn_of(n, self.active)[n] = contact, contact.phys.omega, contact.slipped * 1.0
-
-    def _prepare(self):
-        """Keep the forces (N) of the bonds whose turn is in the next step."""
-        turn = self.active[(O.iter + 1) % len(self.active)]
-        self.forces_before = {n: contact.shear_force * -1.0 for n, (contact, _, _) in turn.items()}
+            contact = self.contacts[n] = _Contact(interaction, interaction.geom, interaction.phys)
+            self.lengths[n] = contact.phys.refLength
+            self.vectors.find(n, contact)
 
     def act(self):
-        """Look at the bonds whose turn it is."""
-        for n, (contact, omega, slipped) in list(self.active[O.iter % len(self.active)].items()):
-            # YADE leaves the slip of a bond without any shear strength as it is.
-            if contact.slipped == slipped and contact.phys.omega == omega and contact.shear_force != ZERO:
-                continue
-            self._look(n, contact, omega, slipped, self.forces_before.get(n))
-        self._look_at_quiet(self.quiet[O.iter % len(self.quiet)])
-        self._prepare()
+        """Sample the work of slip and look at slip and damage, each in its turn."""
+        if O.iter % self.between_samples == 0:
+            self._sample()
+        if O.iter % self.between_looks == 0:
+            self._look_at_slip()
+        if O.iter % self.between_damage == 0:
+            self._look_at_damage()
+        if (O.iter + 1) % self.between_samples == 0:
+            self._prepare()
 
-    def _look_at_quiet(self, turn):
-        for n, contact in list(turn.items()):
-            if contact.slipped != ZERO or contact.phys.omega:
-                del turn[n]
-                self._dissipate(n, _slip_before(self.laws[n], contact), True)
-                self._damage(n, contact, 0.0, ZERO)
+    def _prepare(self):
+        """Keep slip and force (N) of the bonds as they are before a step whose work is sampled."""
+        numbers = np.flatnonzero(self.active & (self.status != SEPARATED))
+        self.before = numbers, self.vectors.read("slipped", numbers), self.vectors.read("shear_force", numbers)
 
-    def _look(self, n, contact, omega_before, slipped_before, force_before=None):
-        """Bring an active bond up to date; with its force at the start of the step, sample its slip."""
-        force, law = -contact.shear_force, self.laws[n]
-        if contact.phys.omega >= 1.0:
-            # Its last shear force went with it: YADE leaves that of the step before.
-            self._dissipate(n, 0.5 * force.squaredNorm() / law.kt, True)
-        elif force_before is not None:
-            work = (force + force_before).dot(contact.geom.shearInc)
-            stored = (force.squaredNorm() - force_before.squaredNorm()) / law.kt
-            self._dissipate(n, 0.5 * self.between_looks * (work - stored), True)
-        self._damage(n, contact, omega_before, slipped_before)
+    def _sample(self):
+        numbers, slipped, force_before = self.before
+        force = self.vectors.read("shear_force", numbers)
+        # YADE leaves the slip of a bond without any shear strength as it is.
+        let_go = force_before.any(axis=1) & ~force.any(axis=1)
+        slid = np.flatnonzero((self.vectors.read("slipped", numbers) != slipped).any(axis=1) | let_go)
+        numbers, force, force_before = numbers[slid], force[slid], force_before[slid]
+        work = -_dot(force + force_before, self.vectors.read("increment", numbers))
+        stored = (_dot(force, force) - _dot(force_before, force_before)) / self.kt[numbers]
+        self._dissipate(numbers, 0.5 * self.between_samples * (work - stored), True)
 
-    def _damage(self, n, contact, omega_before, slipped_before):
-        """Bring the damage up to date; turn the slip of a bond that has not opened to its end."""
-        law, omega = self.laws[n], contact.phys.omega
-        if omega > omega_before:
-            self._dissipate(n, law.dissipated(min(omega, 1.0)) - law.dissipated(omega_before), False)
-        if omega >= 1.0:
-            self._log(n, contact)
-            self._separate(n)
-            return
-        _turn(contact)
-        slip = (contact.slipped - _in_plane(slipped_before, contact.geom.normal)).norm() * contact.phys.refLength
-        if slip and omega < SPENT and law.slip_end < math.inf:
-            omega = min(omega + slip / law.slip_end, SPENT)
-            in_tension, in_shear = _lost_by_damage(law, contact, omega)
-            self._dissipate(n, in_tension, False)
-            # Where there is a look at every step, the slip of the next one is in its sample.
-            if self.between_looks > 1:
-                self._dissipate(n, in_shear, True)
-            contact.phys.setDamage(omega)
-            if omega == SPENT:
-                self._log(n, contact)
+    def _look_at_slip(self):
+        """Raise the damage of the bonds that have slipped since the last look."""
+        there = np.flatnonzero(self.status != SEPARATED)
+        slipped = self.vectors.read("slipped", there).any(axis=1)
+        active = self.active[there]
+        slipped[active] |= ~self.vectors.read("shear_force", there[active]).any(axis=1)
+        numbers = there[slipped]
+        self._begin(numbers[~self.active[numbers]])
+        numbers = self._opened(numbers)
+        slip = _take_slip(self.vectors, numbers, self.kt[numbers] * self.lengths[numbers]) * self.lengths[numbers]
+        damaged = (slip > 0.0) & (self.omega[numbers] < SPENT) & (self.slip_end[numbers] < math.inf)
+        self._damage(numbers[damaged], slip[damaged])
+
+    def _begin(self, numbers):
+        """These bonds are found to have slipped or softened."""
+        for n in numbers.tolist():
+            self.active[n] = True
+            self._dissipate(n, _slip_before(self.laws[n], self.contacts[n]), True)
+
+    def _look_at_damage(self):
+        numbers = np.array(sorted(self.contacts), int)
+        omega = np.array([self.contacts[n].phys.omega for n in numbers.tolist()])
+        softened = numbers[omega != self.omega[numbers]]
+        self._begin(softened[~self.active[softened]])
+        self._opened(softened)
+
+    def _opened(self, numbers):
+        """Bring the damage of bonds up to date. -> those that have not opened to their end."""
+        kept = []
+        for n in numbers.tolist():
+            contact, law, before = self.contacts[n], self.laws[n], float(self.omega[n])
+            omega = contact.phys.omega
+            if omega > before:
+                self._dissipate(n, law.dissipated(min(omega, 1.0)) - law.dissipated(before), False)
+            self.omega[n] = omega
+            if omega >= 1.0:
+                # Its last shear force went with it: YADE leaves that of the step before.
+                self._dissipate(n, 0.5 * contact.phys.shearForce.squaredNorm() / law.kt, True)
+                self._log(n)
+                self._separate(n)
+            else:
+                kept.append(n)
+        return np.array(kept, int)
+
+    def _damage(self, numbers, slip):
+        """Raise the damage of bonds by their slip (m). In the next step their forces fall to what the law then allows;
+        what that dissipates is booked now, and the forces, which YADE only gives out, are those of then."""
+        before = self.omega[numbers]
+        omega = np.minimum(before + slip / self.slip_end[numbers], SPENT)
+        normal, shear = self.vectors.read("normal_force", numbers), self.vectors.read("shear_force", numbers)
+        Fn, Ft = -_dot(normal, self.vectors.read("normal", numbers)), np.sqrt(_dot(shear, shear))
+        kept = np.where(Fn > 0.0, (1.0 - omega) / (1.0 - before), 1.0)
+        self._dissipate(numbers, 0.5 * Fn**2 * (1.0 - kept) / (self.kn[numbers] * (1.0 - before)), False)
+        self.vectors.write("normal_force", numbers, normal * kept[:, None])
+        # Where every step is sampled, the slip of the next one is in its sample.
+        if self.between_samples > 1:
+            limit = np.maximum((1.0 - omega) * self.Rt[numbers] - self.mu[numbers] * kept * Fn, 0.0)
+            falls = Ft > limit
+            numbers_ = numbers[falls]
+            self._dissipate(numbers_, 0.5 * (Ft[falls]**2 - limit[falls]**2) / self.kt[numbers_], True)
+            self.vectors.write("shear_force", numbers_, shear[falls] * (limit[falls] / Ft[falls])[:, None])
+        for n, damage in zip(numbers.tolist(), omega.tolist()):
+            phys = self.contacts[n].phys
+            phys.setDamage(damage)
+            self.omega[n] = phys.omega
+            if damage == SPENT:
+                self._log(n)
                 self.status[n] = BROKEN
-        self._keep(n, contact)
 
-    def _dissipate(self, n, work, by_slip):
-        self.dissipated[n] += work
-        self.energy_released += work
+    def _dissipate(self, numbers, work, by_slip):
+        self.dissipated[numbers] += work
+        self.energy_released += float(np.sum(work))
         if by_slip:
-            self.by_slip[n] += work
+            self.by_slip[numbers] += work
 
-    def _log(self, n, contact):
+    def _log(self, n):
         """Add a bond that breaks now to the cracks."""
-        first, second = O.bodies[contact.interaction.id1], O.bodies[contact.interaction.id2]
+        interaction = self.contacts[n].interaction
+        first, second = O.bodies[interaction.id1], O.bodies[interaction.id2]
         if self.status[n] != INTACT or first is None or second is None:
             return
         place, line = 0.5 * (first.state.pos + second.state.pos), second.state.pos - first.state.pos
@@ -226,17 +256,12 @@ class CpmBonds(BondLog):
         if self.status[n] != SEPARATED:
             self.parted.append(n)
         self.status[n] = SEPARATED
-        _turn_of(n, self.active).pop(n, None)
-        _turn_of(n, self.quiet).pop(n, None)
+        self.contacts.pop(n, None)
 
     def look_at_all(self):
         """Bring damage and status of all bonds up to date."""
-        for turn in self.active:
-            for n, (contact, omega, slipped) in list(turn.items()):
-                if contact.phys.omega != omega:
-                    self._look(n, contact, omega, slipped)
-        for turn in self.quiet:
-            self._look_at_quiet(turn)
+        self._look_at_slip()
+        self._look_at_damage()
 
     def erase_separated(self):
         """At a canonical point: all bonds up to date, those of erased bodies separated, damage as a restart sets it."""
@@ -244,58 +269,40 @@ class CpmBonds(BondLog):
         kept = np.array([body is not None for body in map(O.bodies.__getitem__, range(int(self.pairs.max()) + 1))])
         for n in np.flatnonzero(~kept[self.pairs].all(axis=1)).tolist():
             self._separate(n)
-        self.quiet = [dict(sorted(turn.items())) for turn in self.quiet]
-        self.active = [dict(sorted(turn.items())) for turn in self.active]
-        for n, (contact, omega, slipped) in [bond for turn in self.active for bond in turn.items()]:
-            if contact.slipped != slipped:
-                self._damage(n, contact, omega, slipped)
-            if contact.phys.omega:
-                contact.phys.setDamage(contact.phys.omega)
+        for n in np.flatnonzero(self.omega * (self.status != SEPARATED)).tolist():
+            self.contacts[n].phys.setDamage(self.contacts[n].phys.omega)
         self._prepare()
 
     def _shift(self, n, shift):
-        turn = _turn_of(n, self.active)
-        contact = turn[n][0] if n in turn else _turn_of(n, self.quiet)[n]
+        contact = self.contacts[n]
         contact.phys.refPD += shift
         return contact.geom, contact.phys
 
-    def _intact(self):
-        """{number: contact} of all bonds."""
-        found = {n: contact for turn in self.active for n, (contact, _, _) in turn.items()}
-        for turn in self.quiet:
-            found.update(turn)
-        return found
-
     def softening(self):
         """(m,) from 0, a bond in its initial state, to 1, a broken one."""
-        found = np.where(self.status == INTACT, 0.0, 1.0)
-        for n, (_, omega, _) in [bond for turn in self.active for bond in turn.items()]:
-            found[n] = min(omega, 1.0)
-        return found
+        return np.where(self.status == INTACT, np.minimum(self.omega, 1.0), 1.0)
 
     def elastic_energy(self):
         """Strain energy (J) of all bonds, sum of Fn^2/2kn + Ft^2/2kt with the secant kn of softened ones."""
         self.look_at_all()
-        energy = []
-        for _, geom, phys, _, _ in self._intact().values():
-            # epsN would tell tension too, but YADE does not save it.
-            kn = phys.kn * (1.0 - phys.omega if phys.normalForce.dot(geom.normal) < 0.0 else 1.0)
-            energy.append(0.5 * (phys.normalForce.squaredNorm() / kn + phys.shearForce.squaredNorm() / phys.ks))
-        return math.fsum(energy)
+        n = np.flatnonzero(self.status != SEPARATED)
+        normal, shear = self.vectors.read("normal_force", n), self.vectors.read("shear_force", n)
+        kept = np.where(_dot(normal, self.vectors.read("normal", n)) < 0.0, 1.0 - self.omega[n], 1.0)
+        return math.fsum(0.5 * (_dot(normal, normal) / (self.kn[n] * kept) + _dot(shear, shear) / self.kt[n]))
 
     def take_slip_work(self, particles):
         work, self.slip_taken = 0.5 * (self.by_slip - self.slip_taken), self.by_slip.copy()
         return np.bincount(self.pairs.ravel(), np.repeat(work, 2), particles)
 
     def state(self):
-        bonds = [contact.phys for _, contact in sorted(self._intact().items())]
+        there = np.flatnonzero(self.status != SEPARATED)
         return {**super().state(), "dissipated": self.dissipated.copy(), "by_slip": self.by_slip.copy(),
-                "slip_taken": self.slip_taken.copy(), "omega": np.array([phys.omega for phys in bonds], float),
-                "strain": np.array([phys.epsT for phys in bonds], float).reshape(-1, 3),
-                "plastic_strain": np.array([phys.epsTPl for phys in bonds], float).reshape(-1, 3)}
+                "slip_taken": self.slip_taken.copy(), "omega": self.omega.copy(), "active": self.active.copy(),
+                "strain": self.vectors.read("strain", there), "plastic_strain": self.vectors.read("slipped", there)}
 
     def restore(self, state):
         super().restore(state)
-        self.dissipated, self.by_slip = state["dissipated"].copy(), state["by_slip"].copy()
-        self.slip_taken = state["slip_taken"].copy()
-        self.strains = state["omega"], state["strain"], state["plastic_strain"]
+        for name in ("dissipated", "by_slip", "slip_taken", "omega", "active"):
+            setattr(self, name, state[name].copy())
+        there = np.flatnonzero(self.status != SEPARATED)
+        self.strains = there, self.omega[there], state["strain"], state["plastic_strain"]

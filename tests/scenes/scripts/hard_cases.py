@@ -136,9 +136,11 @@ class Eraser(base.Engine):
         self.first = O.iter
 
 
-def numbers(group):
-    """Those of a group of bonds, which may be divided into turns."""
-    return set().union(*group) if isinstance(group, list) else set(group)
+def numbers(bonds, group):
+    """Those of a group of bonds."""
+    if isinstance(bonds, Bonds):
+        return set(getattr(bonds, group))
+    return set(np.flatnonzero((bonds.active == (group == "active")) & (bonds.status != SEPARATED)))
 
 
 def erased(law):
@@ -149,7 +151,7 @@ def erased(law):
     groups = ("active", "quiet") if law.yade_law == "Cpm" else ("elastic", "softening_bonds", "returned", "broken")
     seen = dict.fromkeys(groups, 0)
     for step in range(240):
-        fixed = {name: numbers(getattr(bonds, name)) for name in seen}
+        fixed = {name: numbers(bonds, name) for name in seen}
         discs = set(range(len(O.bodies))) - {body.id for body in O.bodies if body}
         run(1)
         new = {i for i in range(len(O.bodies)) if O.bodies[i] is None} - discs
@@ -165,7 +167,7 @@ def erased(law):
     return {"erased": len(gone), "seen": seen, "all gone": bool((bonds.status[touching] == SEPARATED).all()),
             "others alive": int((bonds.status[~touching] == INTACT).sum()), "cracks": len(bonds.cracks),
             "broken": int((bonds.status == BROKEN).sum()), "residual": (energy() - before) / before,
-            "left over": sum(n in numbers(getattr(bonds, name)) for n in np.flatnonzero(touching)
+            "left over": sum(n in numbers(bonds, name) for n in np.flatnonzero(touching)
                              for name in groups)}
 
 
