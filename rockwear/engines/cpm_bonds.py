@@ -3,15 +3,13 @@ import math
 from collections import namedtuple
 
 import numpy as np
-from yade import O
+from yade import CpmPhys, O
 
 from rockwear.engines.bond_log import BROKEN, INTACT, SEPARATED, BondLog, Crack
-from rockwear.engines.memory import Vectors
+from rockwear.engines.memory import Vectors, offset
 
 LOOK_PERIOD = 10
-"""Steps between looks at the slip of all bonds; its work is sampled twice as often."""
-DAMAGE_PERIODS = 4
-"""Damage by tension is looked at so many times more rarely."""
+"""Steps between looks at all bonds; the work of slip is sampled twice as often."""
 STRAIGHT = 10
 """Points on the path that a bond is taken to have come before the first look that finds it softened or slipped."""
 SPENT = 1.0 - 1e-6
@@ -39,6 +37,14 @@ _VECTORS = {"normal": lambda contact: contact.geom.normal, "increment": lambda c
             "shear_force": lambda contact: contact.phys.shearForce,
             "strain": lambda contact: contact.phys.epsT, "slipped": lambda contact: contact.phys.epsTPl}
 """Vectors of a bond that looks read, and partly write, for many bonds at once."""
+
+
+def _damage_behind_slip():
+    """Where YADE keeps omega, which it does not give by reference, behind epsTPl."""
+    phys, omega = CpmPhys(), 0.123456789
+    phys.isCohesive, phys.epsCrackOnset, phys.epsFracture = True, 1e-4, 1e-2
+    phys.setDamage(omega)
+    return offset(phys.epsTPl, omega)
 
 
 def _dot(a, b):
@@ -86,14 +92,13 @@ class CpmBonds(BondLog):
         super().__init__(period=1, **common)
         count = len(self.pairs)
         self.between_looks, self.between_samples = period, period // 2 if period % 2 == 0 else period
-        self.between_damage = period * DAMAGE_PERIODS if period > 1 else 1
         self.dissipated, self.by_slip, self.slip_taken = np.zeros(count), np.zeros(count), np.zeros(count)
         self.omega, self.active = np.zeros(count), np.zeros(count, bool)
         """Damage at the last look; whether the bond had slipped or softened by then."""
         self.kn, self.kt, self.Rt, self.mu, self.slip_end = (
             np.array([getattr(law, name) for law in self.laws]) for name in ("kn", "kt", "Rt", "mu", "slip_end"))
         self.contacts, self.lengths, self.strains = {}, np.zeros(count), None
-        self.vectors = Vectors(count, _VECTORS)
+        self.vectors, self.omega_behind = Vectors(count, _VECTORS), _damage_behind_slip()
 
     @staticmethod
     def reference_overlap(phys):
@@ -140,13 +145,11 @@ class CpmBonds(BondLog):
             self.vectors.find(n, contact)
 
     def act(self):
-        """Sample the work of slip and look at slip and damage, each in its turn."""
+        """Sample the work of slip and look at the bonds, each in its turn."""
         if O.iter % self.between_samples == 0:
             self._sample()
         if O.iter % self.between_looks == 0:
-            self._look_at_slip()
-        if O.iter % self.between_damage == 0:
-            self._look_at_damage()
+            self.look_at_all()
         if (O.iter + 1) % self.between_samples == 0:
             self._prepare()
 
@@ -166,49 +169,38 @@ class CpmBonds(BondLog):
         stored = (_dot(force, force) - _dot(force_before, force_before)) / self.kt[numbers]
         self._dissipate(numbers, 0.5 * self.between_samples * (work - stored), True)
 
-    def _look_at_slip(self):
-        """Raise the damage of the bonds that have slipped since the last look."""
+    def look_at_all(self):
+        """Bring damage and status of all bonds up to date."""
         there = np.flatnonzero(self.status != SEPARATED)
-        slipped = self.vectors.read("slipped", there).any(axis=1)
+        omega = self.vectors.number("slipped", self.omega_behind, there)
+        changed = (omega != self.omega[there]) | self.vectors.read("slipped", there).any(axis=1)
         active = self.active[there]
-        slipped[active] |= ~self.vectors.read("shear_force", there[active]).any(axis=1)
-        numbers = there[slipped]
+        changed[active] |= ~self.vectors.read("shear_force", there[active]).any(axis=1)
+        numbers, omega = there[changed], omega[changed]
         self._begin(numbers[~self.active[numbers]])
-        numbers = self._opened(numbers)
+        self._soften(numbers, omega)
+        numbers = numbers[omega < 1.0]
         slip = _take_slip(self.vectors, numbers, self.kt[numbers] * self.lengths[numbers]) * self.lengths[numbers]
         damaged = (slip > 0.0) & (self.omega[numbers] < SPENT) & (self.slip_end[numbers] < math.inf)
         self._damage(numbers[damaged], slip[damaged])
 
     def _begin(self, numbers):
         """These bonds are found to have slipped or softened."""
+        self.active[numbers] = True
         for n in numbers.tolist():
-            self.active[n] = True
             self._dissipate(n, _slip_before(self.laws[n], self.contacts[n]), True)
 
-    def _look_at_damage(self):
-        numbers = np.array(sorted(self.contacts), int)
-        omega = np.array([self.contacts[n].phys.omega for n in numbers.tolist()])
-        softened = numbers[omega != self.omega[numbers]]
-        self._begin(softened[~self.active[softened]])
-        self._opened(softened)
-
-    def _opened(self, numbers):
-        """Bring the damage of bonds up to date. -> those that have not opened to their end."""
-        kept = []
-        for n in numbers.tolist():
-            contact, law, before = self.contacts[n], self.laws[n], float(self.omega[n])
-            omega = contact.phys.omega
-            if omega > before:
-                self._dissipate(n, law.dissipated(min(omega, 1.0)) - law.dissipated(before), False)
-            self.omega[n] = omega
-            if omega >= 1.0:
+    def _soften(self, numbers, omega):
+        """What YADE has raised the damage of these bonds to."""
+        before, self.omega[numbers] = self.omega[numbers], omega
+        rising = omega > before
+        for n, was, now in zip(numbers[rising].tolist(), before[rising].tolist(), omega[rising].tolist()):
+            self._dissipate(n, self.laws[n].dissipated(min(now, 1.0)) - self.laws[n].dissipated(was), False)
+            if now >= 1.0:
                 # Its last shear force went with it: YADE leaves that of the step before.
-                self._dissipate(n, 0.5 * contact.phys.shearForce.squaredNorm() / law.kt, True)
+                self._dissipate(n, 0.5 * self.contacts[n].phys.shearForce.squaredNorm() / self.kt[n], True)
                 self._log(n)
                 self._separate(n)
-            else:
-                kept.append(n)
-        return np.array(kept, int)
 
     def _damage(self, numbers, slip):
         """Raise the damage of bonds by their slip (m). In the next step their forces fall to what the law then allows;
@@ -257,11 +249,6 @@ class CpmBonds(BondLog):
             self.parted.append(n)
         self.status[n] = SEPARATED
         self.contacts.pop(n, None)
-
-    def look_at_all(self):
-        """Bring damage and status of all bonds up to date."""
-        self._look_at_slip()
-        self._look_at_damage()
 
     def erase_separated(self):
         """At a canonical point: all bonds up to date, those of erased bodies separated, damage as a restart sets it."""

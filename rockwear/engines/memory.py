@@ -26,6 +26,19 @@ def place(vector):
     return _pointer(_pointer(id(vector) + INSTANCE) + HOLDER) // SIZE - 1
 
 
+REACH = 64
+"""Numbers before and after a vector among which another one of its object is looked for."""
+
+
+def offset(vector, value):
+    """How far behind a vector that YADE gave by reference the only such value lies. Raises RuntimeError."""
+    first = place(vector)
+    found = np.flatnonzero(MEMORY[first - REACH:first + REACH] == value) - REACH
+    if len(found) != 1:
+        raise RuntimeError(f"{value} is {len(found)} times near a vector of YADE's, not once")
+    return int(found[0])
+
+
 class Vectors:
     """Vectors of many numbered objects, {name: function that gives the vector of an object}.
 
@@ -48,3 +61,7 @@ class Vectors:
     def write(self, name, numbers, values):
         """Set the vectors of these objects (k,) to the values (k, 3)."""
         MEMORY[self.places[name][numbers, None] + np.arange(3)] = values
+
+    def number(self, name, behind, numbers):
+        """(k,) the number so far behind a vector of each of these objects (k,), see `offset`."""
+        return MEMORY[self.places[name][numbers] + behind]

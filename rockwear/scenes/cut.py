@@ -119,7 +119,7 @@ class Cut(Scene):
         self._register(
             ShearRotation(bonds=self.bonds, radii=rock.radii) if turned_in_space else None,
             self.bonds, self.dashpots, tool.contact, self.rock_friction,
-            Separation(self.bonds, period=SEPARATION_PERIOD),
+            Separation(self.bonds, period=SEPARATION_PERIOD) if self.bond_law.yade_law == "JCFpm" else None,
             PathFollower(bodies=tool.bodies, clock=self.programme.path_time, period=PATH_PERIOD) if curved else None,
             tool.wear_engine, tool.profile, self.heat, self.expansion, self.damping, self.boundary,
             self.recorder, self.guard)
