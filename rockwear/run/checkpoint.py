@@ -12,7 +12,7 @@ import numpy as np
 
 from rockwear.kernels.checks import ParameterError
 
-FORMAT = "rockwear checkpoint 3"
+FORMAT = "rockwear checkpoint 4"
 
 
 class CheckpointError(ParameterError):
