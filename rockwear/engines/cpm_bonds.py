@@ -95,8 +95,10 @@ class CpmBonds(BondLog):
         self.dissipated, self.by_slip, self.slip_taken = np.zeros(count), np.zeros(count), np.zeros(count)
         self.omega, self.active = np.zeros(count), np.zeros(count, bool)
         """Damage at the last look; whether the bond had slipped or softened by then."""
-        self.kn, self.kt, self.Rt, self.mu, self.slip_end = (
-            np.array([getattr(law, name) for law in self.laws]) for name in ("kn", "kt", "Rt", "mu", "slip_end"))
+        self.kn, self.kt, self.Rt, self.mu = (
+            np.array([getattr(law, name) for law in self.laws]) for name in ("kn", "kt", "Rt", "mu"))
+        # Unbreakable bonds within grains have none.
+        self.slip_end = np.array([getattr(law, "slip_end", math.inf) for law in self.laws])
         self.contacts, self.lengths, self.strains = {}, np.zeros(count), None
         self.vectors, self.omega_behind = Vectors(count, _VECTORS), _damage_behind_slip()
 

@@ -28,25 +28,29 @@ class RockContacts(Engine):
         """Find the contacts between rock particles that are no bonds, and the pairs that may touch before the collider
         runs again or a bond parts."""
         self.collider = yade_engine(InsertionSortCollider)
-        self.seen = self.collider.numAction
+        self.seen, self.seen_step = self.collider.numAction, O.iter
         self.bonds.parted.clear()
-        self._take(i for i in O.interactions.all() if max(i.id1, i.id2) < self.particles)
+        self._take(O.interactions.all())
 
     def _take(self, found):
         kept = {(i.id1, i.id2): i for i in found if not isinstance(i.phys, (JCFpmPhys, CpmPhys))}
         # A loaded scene has them in another order.
-        self.possible = [kept[pair] for pair in sorted(kept)]
+        self.possible = [kept[pair] for pair in sorted(kept) if max(pair) < self.particles]
 
     def _keep_up(self):
-        """Bring `possible` up to date: all over if the collider has run, which is dear; else with bonds that parted."""
+        """Bring `possible` up to date: with the pairs that the collider has found since, and bonds that parted."""
+        found = []
         if self.collider.numAction != self.seen:
-            self.find_contacts()
-        elif self.bonds.parted:
+            found = [i for i in O.interactions.all() if i.iterBorn >= self.seen_step]
+            self.seen, self.seen_step = self.collider.numAction, O.iter
+        if self.bonds.parted:
             pairs = self.bonds.pairs[self.bonds.parted].tolist()
             self.bonds.parted.clear()
             # YADE would end where it is asked for contacts of an erased body.
             pairs = [(i, j) for i, j in pairs if O.bodies[i] and O.bodies[j] and O.interactions.has(i, j)]
-            self._take([*self.possible, *map(O.interactions.__getitem__, pairs)])
+            found += map(O.interactions.__getitem__, pairs)
+        if found:
+            self._take([*self.possible, *found])
 
     @property
     def contacts(self):
