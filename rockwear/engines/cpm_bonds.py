@@ -166,6 +166,8 @@ class CpmBonds(BondLog):
         # YADE leaves the slip of a bond without any shear strength as it is.
         let_go = force_before.any(axis=1) & ~force.any(axis=1)
         slid = np.flatnonzero((self.vectors.read("slipped", numbers) != slipped).any(axis=1) | let_go)
+        if not len(slid):
+            return
         numbers, force, force_before = numbers[slid], force[slid], force_before[slid]
         work = -_dot(force + force_before, self.vectors.read("increment", numbers))
         stored = (_dot(force, force) - _dot(force_before, force_before)) / self.kt[numbers]
@@ -179,12 +181,15 @@ class CpmBonds(BondLog):
         active = self.active[there]
         changed[active] |= ~self.vectors.read("shear_force", there[active]).any(axis=1)
         numbers, omega = there[changed], omega[changed]
+        if not len(numbers):
+            return
         self._begin(numbers[~self.active[numbers]])
         self._soften(numbers, omega)
         numbers = numbers[omega < 1.0]
         slip = _take_slip(self.vectors, numbers, self.kt[numbers] * self.lengths[numbers]) * self.lengths[numbers]
         damaged = (slip > 0.0) & (self.omega[numbers] < SPENT) & (self.slip_end[numbers] < math.inf)
-        self._damage(numbers[damaged], slip[damaged])
+        if damaged.any():
+            self._damage(numbers[damaged], slip[damaged])
 
     def _begin(self, numbers):
         """These bonds are found to have slipped or softened."""

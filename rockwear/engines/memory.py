@@ -47,21 +47,21 @@ class Vectors:
 
     def __init__(self, count, of):
         self.of = of
-        self.places = {name: np.zeros(count, np.int64) for name in of}
+        self.places = {name: np.zeros((count, 3), np.int64) for name in of}
 
     def find(self, n, found):
         """The object n is `found` from now on."""
         for name, vector in self.of.items():
-            self.places[name][n] = place(vector(found))
+            self.places[name][n] = place(vector(found)) + np.arange(3)
 
     def read(self, name, numbers):
         """(k, 3) the vectors of these objects (k,)."""
-        return MEMORY[self.places[name][numbers, None] + np.arange(3)]
+        return MEMORY[self.places[name][numbers]]
 
     def write(self, name, numbers, values):
         """Set the vectors of these objects (k,) to the values (k, 3)."""
-        MEMORY[self.places[name][numbers, None] + np.arange(3)] = values
+        MEMORY[self.places[name][numbers]] = values
 
     def number(self, name, behind, numbers):
         """(k,) the number so far behind a vector of each of these objects (k,), see `offset`."""
-        return MEMORY[self.places[name][numbers] + behind]
+        return MEMORY[self.places[name][numbers, 0] + behind]
