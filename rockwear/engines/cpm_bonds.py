@@ -26,7 +26,8 @@ def _slip_before(law, contact):
     for k in range(1, STRAIGHT + 1):
         _, (Ft,) = law.respond(bond, un * k / STRAIGHT, (ut * k / STRAIGHT,))
         work, before = work + 0.5 * (Ft + before) * ut / STRAIGHT, Ft
-    return work - 0.5 * before**2 / law.kt
+    # What the present force stores is not spent; where it is above the law's, `_damage` tells what the fall gives.
+    return work - 0.5 * phys.shearForce.squaredNorm() / law.kt
 
 
 _Contact = namedtuple("_Contact", "interaction geom phys")
@@ -99,6 +100,7 @@ class CpmBonds(BondLog):
             np.array([getattr(law, name) for law in self.laws]) for name in ("kn", "kt", "Rt", "mu"))
         # Unbreakable bonds within grains have none.
         self.slip_end = np.array([getattr(law, "slip_end", math.inf) for law in self.laws])
+        # Lengths (m) of the bonds that are there.
         self.contacts, self.lengths, self.strains = {}, np.zeros(count), None
         self.vectors, self.omega_behind = Vectors(count, _VECTORS), _damage_behind_slip()
 
@@ -223,9 +225,9 @@ class CpmBonds(BondLog):
         if self.between_samples > 1:
             limit = np.maximum((1.0 - omega) * self.Rt[numbers] - self.mu[numbers] * kept * Fn, 0.0)
             falls = Ft > limit
-            numbers_ = numbers[falls]
-            self._dissipate(numbers_, 0.5 * (Ft[falls]**2 - limit[falls]**2) / self.kt[numbers_], True)
-            self.vectors.write("shear_force", numbers_, shear[falls] * (limit[falls] / Ft[falls])[:, None])
+            fallen = numbers[falls]
+            self._dissipate(fallen, 0.5 * (Ft[falls]**2 - limit[falls]**2) / self.kt[fallen], True)
+            self.vectors.write("shear_force", fallen, shear[falls] * (limit[falls] / Ft[falls])[:, None])
         for n, damage in zip(numbers.tolist(), omega.tolist()):
             phys = self.contacts[n].phys
             phys.setDamage(damage)
@@ -256,6 +258,7 @@ class CpmBonds(BondLog):
             self.parted.append(n)
         self.status[n] = SEPARATED
         self.contacts.pop(n, None)
+        self.lengths[n] = 0.0
 
     def erase_separated(self):
         """At a canonical point: all bonds up to date, those of erased bodies separated, damage as a restart sets it."""
