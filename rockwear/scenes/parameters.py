@@ -82,7 +82,9 @@ OUTLINE = (
     Parameter("clearance", 3.0, "deg", number(0, 80), "clearance angle, from the horizontal", "ours", PARAMETRIC),
     Parameter("tip_radius", 4e-3, "m", above_zero, "rounding of the tip; it lies so far behind the tool's origin",
               "ours"),
-    Parameter("outline", "", "", file, "CSV file of x, y in m: a tooth of your own in place of the five above"))
+    Parameter("wear_flat", 0.0, "m", number(0), "length of a worn flat behind the tip, along the motion", "ours",
+              PARAMETRIC),
+    Parameter("outline", "", "", file, "CSV file of x, y in m: a tooth of your own in place of the six above"))
 SHAPE = (
     Parameter("work_fraction", 1.0, "", number(0, 1), "part of the friction work that wears a tool of facets",
               "[Rojek 2003, eq. 6.9]; [Rocky, eq. 2-53]: 0.5", OF_FACETS),

@@ -45,7 +45,7 @@ def outline(v):
         return vertices - tip(vertices) - [v.tip_radius, 0.0]
     try:
         vertices = tooth(height=v.tooth_height, width=v.tooth_width, rake=math.radians(v.rake),
-                         clearance=math.radians(v.clearance), tip_radius=v.tip_radius)
+                         clearance=math.radians(v.clearance), tip_radius=v.tip_radius, wear_flat=v.wear_flat)
     except ParameterError as error:
         # The kernel's words for them, and its radians, are not those of the scene.
         if error.unit == "rad":

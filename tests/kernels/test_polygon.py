@@ -120,12 +120,24 @@ def test_tooth_lies_as_documented():
     ({"rake": 1.5}, "rake"), ({"rake": -2.0}, "rake"), ({"rake": float("nan")}, "rake"),
     ({"clearance": -0.1}, "clearance"), ({"clearance": 1.6}, "clearance"),
     ({"tip_radius": 0.1}, "tip_radius"), ({"clearance": 1.2}, "clearance"),
-    ({"width": 0.001, "rake": -0.5}, "width"),
+    ({"width": 0.001, "rake": -0.5}, "width"), ({"wear_flat": -1e-3}, "wear_flat"), ({"wear_flat": 0.04}, "width"),
 ])
 def test_tooth_errors(change, name):
     with pytest.raises(ParameterError) as error:
         outline.tooth(**{**TOOTH, **change})
     assert error.value.name == name and "\n" not in str(error.value)
+
+
+def test_a_wear_flat_is_cut_off_the_clearance_face():
+    """The flat lies on y = 0 from the lowest point of the tip circle to where the clearance face begins."""
+    shape = outline.tooth(**TOOTH, wear_flat=0.004)
+    assert shape[0] == pytest.approx([-0.006, 0.0], abs=1e-15) and shape[1] == pytest.approx([-0.002, 0.0], abs=1e-15)
+    heel = shape[0] - shape[-1]
+    assert math.atan2(-heel[1], heel[0]) == pytest.approx(0.15)
+    # Against a tooth without clearance the wedge below the clearance face behind the flat is missing.
+    level = outline.tooth(**{**TOOTH, "clearance": 0.0})
+    behind = shape[0, 0] - shape[-1, 0]
+    assert outline.area(level) - outline.area(shape) == pytest.approx(0.5 * behind**2 * math.tan(0.15))
 
 
 @pytest.mark.parametrize("text", ["x,y\n0,0\n0,2\n2,2\n2,0\n", "0,0\n2,0\n2,2\n0,2\n0,0\n",
