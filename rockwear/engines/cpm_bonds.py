@@ -40,12 +40,12 @@ _VECTORS = {"normal": lambda contact: contact.geom.normal, "increment": lambda c
 """Vectors of a bond that looks read, and partly write, for many bonds at once."""
 
 
-def _damage_behind_slip():
-    """Where YADE keeps omega, which it does not give by reference, behind epsTPl."""
-    phys, omega = CpmPhys(), 0.123456789
-    phys.isCohesive, phys.epsCrackOnset, phys.epsFracture = True, 1e-4, 1e-2
+def _behind_slip():
+    """Where YADE keeps omega and the cohesion, which it does not give by reference, behind epsTPl."""
+    phys, omega, cohesion = CpmPhys(), 0.123456789, 0.987654321
+    phys.isCohesive, phys.epsCrackOnset, phys.epsFracture, phys.undamagedCohesion = True, 1e-4, 1e-2, cohesion
     phys.setDamage(omega)
-    return offset(phys.epsTPl, omega)
+    return offset(phys.epsTPl, omega), offset(phys.epsTPl, cohesion)
 
 
 def _dot(a, b):
@@ -76,7 +76,9 @@ class CpmBonds(BondLog):
     slipped before it is found to have, the law tells from a straight path to where it is found.
 
     C++ knows no damage by slip: a look counts what the bond slipped since the last one and raises the damage by it. A
-    bond that slip has broken stays a contact in YADE until it opens; what it slips until then is booked here too.
+    bond that slip has broken stays a contact in YADE until it opens; what it slips until then is booked here too. And
+    C++ takes the part of the cohesion that is left to be that of the stiffness: every step sets the cohesion so that
+    what is left is what the law says.
 
     C++ erases a bond that has opened to its end; if its particles meet again, that is a plain contact, by their radii
     (which must not overlap when they are bonded). YADE turns the total shear strain of a bond with the contact, but not
@@ -98,11 +100,14 @@ class CpmBonds(BondLog):
         """Damage at the last look; whether the bond had slipped or softened by then."""
         self.kn, self.kt, self.Rt, self.mu = (
             np.array([getattr(law, name) for law in self.laws]) for name in ("kn", "kt", "Rt", "mu"))
-        # Unbreakable bonds within grains have none.
-        self.slip_end = np.array([getattr(law, "slip_end", math.inf) for law in self.laws])
+        # Unbreakable bonds within grains have none of these.
+        self.slip_end, self.coupling = (np.array([getattr(law, name, none) for law in self.laws])
+                                        for name, none in (("slip_end", math.inf), ("coupling", 0.0)))
+        self.weakened = np.zeros(count)
+        """Damage for which the cohesion in YADE was last set."""
         # Lengths (m) of the bonds that are there.
         self.contacts, self.lengths, self.strains = {}, np.zeros(count), None
-        self.vectors, self.omega_behind = Vectors(count, _VECTORS), _damage_behind_slip()
+        self.vectors, (self.omega_behind, self.cohesion_behind) = Vectors(count, _VECTORS), _behind_slip()
 
     @staticmethod
     def reference_overlap(phys):
@@ -136,7 +141,7 @@ class CpmBonds(BondLog):
         self._prepare()
 
     def _take_up(self, numbers):
-        for array in (self.dissipated, self.by_slip, self.slip_taken, self.omega):
+        for array in (self.dissipated, self.by_slip, self.slip_taken, self.omega, self.weakened):
             array[numbers] = 0.0
         self.active[numbers] = False
         self._follow(numbers)
@@ -156,6 +161,18 @@ class CpmBonds(BondLog):
             self.look_at_all()
         if (O.iter + 1) % self.between_samples == 0:
             self._prepare()
+        self._weaken()
+
+    def _weaken(self):
+        """Set the cohesion in YADE, of which it takes the part 1 - omega, of the bonds whose damage has changed."""
+        numbers = np.flatnonzero(self.active & (self.coupling > 0.0) & (self.status != SEPARATED))
+        omega = self.vectors.number("slipped", self.omega_behind, numbers)
+        changed = omega != self.weakened[numbers]
+        if changed.any():
+            numbers, omega = numbers[changed], omega[changed]
+            self.weakened[numbers] = omega
+            self.vectors.set_number("slipped", self.cohesion_behind, numbers,
+                                    self.Rt[numbers] / (1.0 - self.coupling[numbers] * omega))
 
     def _prepare(self):
         """Keep slip and force (N) of the bonds as they are before a step whose work is sampled."""
@@ -214,8 +231,9 @@ class CpmBonds(BondLog):
     def _damage(self, numbers, slip):
         """Raise the damage of bonds by their slip (m). In the next step their forces fall to what the law then allows;
         what that dissipates is booked now, and the forces, which YADE only gives out, are those of then."""
-        before = self.omega[numbers]
-        omega = np.minimum(before + slip / self.slip_end[numbers], SPENT)
+        before, coupling = self.omega[numbers], self.coupling[numbers]
+        left = np.maximum((1.0 - before) / (1.0 - coupling * before) - slip / self.slip_end[numbers], 0.0)
+        omega = np.minimum((1.0 - left) / (1.0 - coupling * left), SPENT)
         normal, shear = self.vectors.read("normal_force", numbers), self.vectors.read("shear_force", numbers)
         Fn, Ft = -_dot(normal, self.vectors.read("normal", numbers)), np.sqrt(_dot(shear, shear))
         kept = np.where(Fn > 0.0, (1.0 - omega) / (1.0 - before), 1.0)
@@ -223,7 +241,7 @@ class CpmBonds(BondLog):
         self.vectors.write("normal_force", numbers, normal * kept[:, None])
         # Where every step is sampled, the slip of the next one is in its sample.
         if self.between_samples > 1:
-            limit = np.maximum((1.0 - omega) * self.Rt[numbers] - self.mu[numbers] * kept * Fn, 0.0)
+            limit = np.maximum(left * self.Rt[numbers] - self.mu[numbers] * kept * Fn, 0.0)
             falls = Ft > limit
             fallen = numbers[falls]
             self._dissipate(fallen, 0.5 * (Ft[falls]**2 - limit[falls]**2) / self.kt[fallen], True)

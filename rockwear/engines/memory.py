@@ -65,3 +65,7 @@ class Vectors:
     def number(self, name, behind, numbers):
         """(k,) the number so far behind a vector of each of these objects (k,), see `offset`."""
         return MEMORY[self.places[name][numbers, 0] + behind]
+
+    def set_number(self, name, behind, numbers, values):
+        """Set the number so far behind a vector of each of these objects (k,) to the values (k,)."""
+        MEMORY[self.places[name][numbers, 0] + behind] = values

@@ -9,6 +9,8 @@ from rockwear.scenes import yade_scene
 
 FREE = "zXY"
 HELD = "xyzXYZ"
+MOST_LATE = 0.75
+"""Part of a slab by which the window follows late while the tool is under load."""
 
 
 class FixedBoundary:
@@ -52,9 +54,14 @@ class RockWindow:
         for n in np.flatnonzero(self.rock.absent).tolist():
             O.bodies[n].state.blockedDOFs = HELD
 
-    def follow(self, distance):
-        """Bring the window along to where the tool has gone so far (m)."""
-        while distance >= self.rock.begin + self.rock.slab_length:
+    def follow(self, distance, under_load=False):
+        """Bring the window along to where the tool has gone so far (m).
+
+        Under load it waits, for part of a slab at most: rock that comes in, at rest, beside rock that is pressed
+        together would be torn off when the load falls.
+        """
+        late = MOST_LATE if under_load else 0.0
+        while distance >= self.rock.begin + (1.0 + late) * self.rock.slab_length:
             self.advance(distance)
 
     def whole_record(self, distance, behind):

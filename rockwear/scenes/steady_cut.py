@@ -23,6 +23,8 @@ from rockwear.scenes.rock_window import FixedBoundary, RockWindow
 
 LEAST_SPEED = 0.05
 """Part of the cutting velocity with which the ramp of speed begins."""
+LOADED = 0.1
+"""Part of the largest mean force of a chunk of steps above which the tool is under load."""
 BOUNDARIES = "absorbing", "fixed", "free"
 
 NEAR_BOTTOM, MOST_NEAR_BOTTOM = 0.1, 0.02
@@ -121,6 +123,7 @@ class SteadyCut(Programme):
         self.origin = start
         self.velocity, self.cut_length, self.ramp_length, self.window = velocity, cut_length, ramp_length, window
         self.way, self.speed, self.since = 0.0, 0.0, 0
+        self.work, self.largest = 0.0, 0.0
 
     def stages(self):
         return {"cut": (self.cut_length + self.ramp_length) / self.velocity * self.scene.time_scale}
@@ -138,9 +141,17 @@ class SteadyCut(Programme):
         """m that the tool has gone."""
         return self.way + self.speed * (O.iter - self.since) * self.scene.time_step
 
+    def _under_load(self):
+        """Whether the tool has been under load since the last call, which was when it had gone `way`."""
+        step, work = self.distance - self.way, self.scene.tool.contact.work_done
+        force, self.work = (work - self.work) / step if step else 0.0, work
+        self.largest = max(self.largest, force)
+        return force > LOADED * self.largest
+
     def run(self):
+        under_load = self._under_load()
         self.way, self.since = self.distance, O.iter
-        self.window.follow(self.way)
+        self.window.follow(self.way, under_load)
         self.since = O.iter
         ramp = 2 * self.ramp_length / self.velocity
         reached = (self.step + 0.5 * self.scene.chunk) * self.scene.time_step
@@ -195,9 +206,10 @@ class SteadyCut(Programme):
 
     def state(self):
         return {**super().state(), "window": self.window.state(), "way": self.way, "speed": self.speed,
-                "since": self.since}
+                "since": self.since, "work": self.work, "largest": self.largest}
 
     def restore(self, state):
         super().restore(state)
         self.way, self.speed, self.since = float(state["way"]), float(state["speed"]), int(state["since"])
+        self.work, self.largest = float(state["work"]), float(state["largest"])
         self.window.restore(state["window"], self.scene, self._boundary())

@@ -162,19 +162,39 @@ def test_slip_back_and_forth_damages_as_slip_in_one_direction():
     for ut in (0.5, 0.3, 0.5, 0.2):
         SLIPPING.respond(bond, 0.0, (ut * SLIP_END,))
     # Slip up to 0.5, none on the way of unloading and back, and then the other way.
-    (force,), omega = SLIPPING.respond(bond, 0.0, (0.2 * SLIP_END,))[1], bond.softening
+    (force,), lost = SLIPPING.respond(bond, 0.0, (0.2 * SLIP_END,))[1], 1 - SLIPPING.strength_left(bond.softening)
     first = (0.5 * SLIP_END - RT / KT) / (SLIP_END - RT / KT)
-    assert omega > first and -force == pytest.approx((1 - omega) * RT)
+    assert lost > first and -force == pytest.approx((1 - lost) * RT)
     assert 0.2 * SLIP_END - force / KT == pytest.approx(bond.ut_plastic[0])
-    assert omega == pytest.approx((first * SLIP_END + (first * SLIP_END - bond.ut_plastic[0])) / SLIP_END)
+    assert lost == pytest.approx((first * SLIP_END + (first * SLIP_END - bond.ut_plastic[0])) / SLIP_END)
 
 
-def test_slip_weakens_a_bond_in_tension():
+def test_slip_takes_as_much_of_the_tension_as_of_the_cohesion():
     bond = SLIPPING.initial_state()
     SLIPPING.respond(bond, 0.0, (0.5 * SLIP_END,))
-    omega = bond.softening
-    Fn, _ = SLIPPING.respond(bond, 0.5 * ONSET, (0.5 * SLIP_END,))
-    assert 0.3 < omega < 0.5 and Fn == pytest.approx((1 - omega) * 0.5 * RN)
+    left = 0.625
+    assert SLIPPING.strength_left(bond.softening) == pytest.approx(left)
+    opening = END - left * (END - ONSET)
+    # Without shear force nothing slips on.
+    Fn, _ = SLIPPING.respond(bond, opening, bond.ut_plastic)
+    assert Fn == pytest.approx(left * RN)
+    assert SLIPPING.respond(bond, 0.5 * opening, bond.ut_plastic)[0] == pytest.approx(0.5 * left * RN)
+
+
+@pytest.mark.parametrize("part", [0.1, 0.5, 0.9])
+def test_opening_takes_as_much_of_the_cohesion_as_of_the_tension(part):
+    """And not as much as of the stiffness, of which a tenth is left early on where the fracture energy is high."""
+    law = Cohesive(bond_fracture_energy=30.0, bond_shear_energy=SHEAR_ENERGY, **BRITTLE)
+    bond = law.initial_state()
+    law.respond(bond, law.onset + part * (law.gone - law.onset), (0.0,))
+    assert 1 - bond.softening < 0.1
+    _, (force,) = law.respond(bond, 0.0, ((1 - part) * RT / KT,))
+    assert force == pytest.approx((1 - part) * RT) and law.strength_left(bond.softening) == pytest.approx(1 - part)
+    # What is left to slip takes the same part of the shear energy, by the square of the strength.
+    ut = np.linspace((1 - part) * RT / KT, SLIP_END, 200)
+    force = [law.respond(bond, 0.0, (x,))[1][0] for x in ut]
+    spent = work(np.array(force), ut) + 0.5 * ((1 - part) * RT)**2 / KT
+    assert spent == pytest.approx((1 - part)**2 * SHEAR_ENERGY, rel=1e-3)
 
 
 def test_with_too_little_shear_energy_it_is_brittle_in_shear():

@@ -72,6 +72,15 @@ def test_slip_damages_as_the_law_says_late_by_a_look(checks):
     assert found["4000 steps, 1"]["force"] < 0.3 * found["1000 steps, 1"]["force"]
 
 
+def test_opening_and_slip_take_the_same_strength(checks):
+    """What is left to slip after half of the opening is far more than what is left of the stiffness, a quarter."""
+    found = checks["damaged both ways"]
+    for case, error in (("1000 steps, 1", 1e-3), ("4000 steps, 1", 2.5e-4), ("4000 steps, 10", 2e-3)):
+        assert found[case]["force"] < error and abs(found[case]["energy"]) < 2e-2 and found[case]["status"] == 1
+        assert found[case]["by slip"] == pytest.approx(0.382, abs=5e-3)
+    assert found["4000 steps, 1"]["force"] < 0.3 * found["1000 steps, 1"]["force"]
+
+
 def test_the_work_of_slip_goes_to_the_two_particles_in_halves(checks):
     found = checks["slip by particle"]
     assert found["halves"] == pytest.approx([0.5, 0.5], rel=1e-12) and found["left"] == 0

@@ -15,14 +15,19 @@ class Cohesive(LinearBondLaw):
 
     Tension is [Rojek 2003, eqs 4.17-4.19] driven by opening alone: with u0 = Rn/kn, uf = 2 G/Rn and the largest opening
     so far u, omega = (1 - u0/u)/(1 - u0/uf) and Fn = (1 - omega) kn un; compression is elastic. Shear is elastic up to
-    |Ft| = (1 - omega) Rt - mu Fn (Fn positive in tension) [Bahaaddini 2018, eqs 2-4] and slips there. Slip by ds raises
-    omega by ds/sf, sf = 2 G2/Rt: without normal force, shear softens linearly with the displacement, and breaking a
-    bond takes the work G2 (slip weakening, as of J. R. Rice, 1980); under pressure, friction takes more beside it. At
-    omega = 1 the bond is broken, and Coulomb friction remains. The work to break it in tension is G.
+    |Ft| = c Rt - mu Fn (Fn positive in tension) [Bahaaddini 2018, eqs 2-4] and slips there.
 
-    This is the published part of YADE's concrete model (Law2_ScGeom_CpmPhys_Cpm, damLaw 0), which carries it in C++,
-    but for the damage by slip, which engines.cpm_bonds adds. (Its equivStrainShearContrib lets shear drive the damage
-    by strain: friction alone would then break a bond under pressure, and it is left at 0.)
+    Without a shear energy, slip does not damage, and c = 1 - omega: this is the published part of YADE's concrete model
+    (Law2_ScGeom_CpmPhys_Cpm, damLaw 0), which carries it in C++. But 1 - omega is the part of the stiffness that is
+    left: it falls to a tenth while most of the tensile strength is still there, and cohesion goes for little work.
+
+    With a shear energy G2, c = (uf - u)/(uf - u0) = (1 - omega)/(1 - (1 - u0/uf) omega) is the part of the tensile
+    strength that is left, which falls in a line from 1 to 0 as the bond opens, and slip by ds lowers it by ds/sf, sf =
+    2 G2/Rt: without normal force, shear softens linearly with the displacement, and breaking a bond takes the work G2
+    (slip weakening, as of J. R. Rice, 1980); under pressure, friction takes more beside it. At c = 0 the bond is
+    broken, and Coulomb friction remains. The work to break it in tension is G. engines.cpm_bonds adds this to YADE's
+    model. (Its equivStrainShearContrib lets shear drive the damage by strain: friction alone would then break a bond
+    under pressure, and it is left at 0.)
 
     kn, kt  N/m, > 0      mu  friction within the bond and after breakage, >= 0
     bond_tension, bond_cohesion  Pa, bond_fracture_energy (G)  J/m2, all > 0: of a bond that stands for 1 m2 of crack,
@@ -77,9 +82,24 @@ class Cohesive(LinearBondLaw):
         force = self.Rn * (uf - u) / (uf - u0)
         return 0.5 * (self.Rn * u0 + (self.Rn + force) * (u - u0) - force * u)
 
+    @property
+    def coupling(self):
+        """q in c = (1 - omega)/(1 - q omega): 1 - u0/uf, so that c is the part of the strength, or 0 for that of the
+        stiffness."""
+        return 0.0 if self.slip_end == math.inf else 1.0 - self.onset / self.gone
+
+    def strength_left(self, softening):
+        """Part c of the cohesion that is left to a bond of this omega."""
+        return (1.0 - softening) / (1.0 - self.coupling * softening)
+
+    def slipped(self, softening, slip):
+        """omega, from `softening` on, after so much slip (m); 1 where none of the cohesion is left."""
+        left = max(self.strength_left(softening) - slip / self.slip_end, 0.0)
+        return (1.0 - left) / (1.0 - self.coupling * left)
+
     def shear_limit(self, softening, Fn):
         """|Ft| (N) at which a bond of this omega slips under the normal force Fn (N)."""
-        return max((1.0 - softening) * self.Rt - self.mu * Fn, 0.0)
+        return max(self.strength_left(softening) * self.Rt - self.mu * Fn, 0.0)
 
     def _bonded(self, bond, un, ut):
         omega, u0 = bond.softening, self.onset
@@ -94,7 +114,7 @@ class Cohesive(LinearBondLaw):
         if norm > limit:
             # The limit falls with the slip, but not below zero.
             slip = min((norm - limit) / (self.kt - self.Rt / self.slip_end), norm / self.kt)
-            omega += slip / self.slip_end
+            omega = self.slipped(omega, slip)
             if omega >= 1.0:
                 return None
             bond.softening = omega

@@ -199,6 +199,22 @@ def damaged_by_slip(law, steps, period):
             "mode": crack.mode, "status": int(bonds.status[0])}
 
 
+def damaged_both_ways(law, steps, period):
+    """A pair that opens halfway to its end and shears there until slip has broken it.
+
+    -> errors of the force, over the strength, and of the energy released; the work of slip, over the shear energy.
+    """
+    way = np.linspace(0.0, 2.5, steps)
+    un, ut = np.clip(way, 0.0, 0.5) * law.gone, np.clip(way - 0.5, 0.0, None) * law.slip_end
+    response = drive_pair(law, un, ut, period=period)
+    bonds, exact = response.bonds, follow(law, response.un, response.ut)
+    path = np.column_stack([response.un, response.ut])
+    work = np.sum(0.5 * (exact[1:] + exact[:-1]) * np.diff(path, axis=0))
+    energy = bonds.elastic_energy() + bonds.energy_released
+    return {"force": float(np.mean(abs(forces(response) - exact)) / law.Rn), "energy": float(energy / work - 1),
+            "by slip": float(bonds.by_slip[0] / law.fracture_energy()[1]), "status": int(bonds.status[0])}
+
+
 def flying_apart(law, period=1):
     """A free pair driven apart, turning and shearing: energy that is in no balance, over the energy released."""
     bonds = drive_pair(law, np.zeros(2), np.zeros(2), period=period).bonds
@@ -298,6 +314,8 @@ checks = {
     "looks": {period: looked_at_now_and_then(LAWS["cohesive"], period) for period in (1, 10, 40)},
     "damaged by slip": {f"{steps} steps, {period}": damaged_by_slip(SLIPPING, steps, period)
                         for steps, period in ((1000, 1), (4000, 1), (4000, 10))},
+    "damaged both ways": {f"{steps} steps, {period}": damaged_both_ways(SLIPPING, steps, period)
+                          for steps, period in ((1000, 1), (4000, 1), (4000, 10))},
     "without realigning": without_realigning(LAWS["cohesive"]),
     "coulomb": {name: coulomb_afterwards(LAWS[name]) for name in LINEAR},
     "work": {name: work_until_gone(LAWS[name]) for name in ("damage", "elasto-plastic", "cohesive")},
