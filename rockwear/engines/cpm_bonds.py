@@ -103,8 +103,6 @@ class CpmBonds(BondLog):
         # Unbreakable bonds within grains have none of these.
         self.slip_end, self.coupling = (np.array([getattr(law, name, none) for law in self.laws])
                                         for name, none in (("slip_end", math.inf), ("coupling", 0.0)))
-        self.weakened = np.zeros(count)
-        """Damage for which the cohesion in YADE was last set."""
         # Lengths (m) of the bonds that are there.
         self.contacts, self.lengths, self.strains = {}, np.zeros(count), None
         self.vectors, (self.omega_behind, self.cohesion_behind) = Vectors(count, _VECTORS), _behind_slip()
@@ -141,7 +139,7 @@ class CpmBonds(BondLog):
         self._prepare()
 
     def _take_up(self, numbers):
-        for array in (self.dissipated, self.by_slip, self.slip_taken, self.omega, self.weakened):
+        for array in (self.dissipated, self.by_slip, self.slip_taken, self.omega):
             array[numbers] = 0.0
         self.active[numbers] = False
         self._follow(numbers)
@@ -164,15 +162,11 @@ class CpmBonds(BondLog):
         self._weaken()
 
     def _weaken(self):
-        """Set the cohesion in YADE, of which it takes the part 1 - omega, of the bonds whose damage has changed."""
+        """Set the cohesion in YADE, of which it takes the part 1 - omega."""
         numbers = np.flatnonzero(self.active & (self.coupling > 0.0) & (self.status != SEPARATED))
         omega = self.vectors.number("slipped", self.omega_behind, numbers)
-        changed = omega != self.weakened[numbers]
-        if changed.any():
-            numbers, omega = numbers[changed], omega[changed]
-            self.weakened[numbers] = omega
-            self.vectors.set_number("slipped", self.cohesion_behind, numbers,
-                                    self.Rt[numbers] / (1.0 - self.coupling[numbers] * omega))
+        self.vectors.set_number("slipped", self.cohesion_behind, numbers,
+                                self.Rt[numbers] / (1.0 - self.coupling[numbers] * omega))
 
     def _prepare(self):
         """Keep slip and force (N) of the bonds as they are before a step whose work is sampled."""
