@@ -1,9 +1,9 @@
 """What a step of YADE costs by the number of particles, their order in memory, the collider's stride, and threads.
 
-    python3 -m calibration.benchmarks.scale DIR [TURNS]        (part of make bench)
+    python3 -m calibration.benchmarks.scale DIR        (part of make bench)
 
 Runs calibration/benchmarks/scale_block.py, one process at a time except for the jobs side by side, all cases of a turn
-one after the other; blocks that DIR has are kept. A single turn leaves out the threads. Writes scale.md, scale.json and scale.png into DIR.
+one after the other; blocks that DIR has are kept. Writes scale.md, scale.json and scale.png into DIR.
 """
 import json
 import math
@@ -26,8 +26,8 @@ VERLET = 0.1, 0.25, 0.5, 1.0
 VERLET_SIZE = THREADS_SIZE = 20_000
 THREADS = ("one job, -j1:", 1, 1), ("one job, -j2:", 1, 2), ("two jobs, -j1, together:", 2, 1)
 """Words, jobs, threads of each."""
-TURNS, LARGE = 3, 50_000
-"""Turns, one above LARGE particles."""
+TURNS, LARGE = 3, 10_000
+"""Turns, one from LARGE particles on."""
 WORK = 8e6
 """Bonds times steps that are timed."""
 
@@ -69,10 +69,10 @@ def cases():
     return {**sizes, **{f"verlet-{v}": dict(particles=VERLET_SIZE, verlet=v) for v in VERLET}}
 
 
-def measure(folder, turns):
+def measure(folder):
     """{case: what it wrote, `ns` (median) per bond and step}."""
     found = {name: [] for name in cases()}
-    for turn in range(turns):
+    for turn in range(TURNS):
         for name, options in cases().items():
             if not turn or options["particles"] < LARGE:
                 found[name].append(block(folder / f"scale/{turn}-{name}", **options))
@@ -128,11 +128,11 @@ def drawn(found):
     return figure
 
 
-def curve(folder, turns=TURNS):
+def curve(folder):
     """Run all, write scale.json and scale.png into `folder`. -> the lines of the tables."""
     folder.mkdir(parents=True, exist_ok=True)
-    found = measure(folder, turns)
-    threads = {name: together(folder / "scale", jobs, n) for name, jobs, n in THREADS} if turns > 1 else {}
+    found = measure(folder)
+    threads = {name: together(folder / "scale", jobs, n) for name, jobs, n in THREADS}
     (folder / "scale.json").write_text(json.dumps({"blocks": found, "threads": threads}, indent=1), encoding="utf-8")
     with matplotlib.rc_context(plots.STYLE):
         drawn(found).savefig(folder / "scale.png")
@@ -143,6 +143,6 @@ def curve(folder, turns=TURNS):
 if __name__ == "__main__":
     try:
         place = Path(sys.argv[1])
-        print(generated.write_page(place / "scale.md", curve(place, *map(int, sys.argv[2:]))))
+        print(generated.write_page(place / "scale.md", curve(place)))
     except RunFailed as error:
         sys.exit(f"scale: {error}")
