@@ -1,6 +1,7 @@
 """Bonds carried by YADE's concrete model: softening in C++, looked at from Python now and then."""
 import math
 from collections import namedtuple
+from functools import cache
 
 import numpy as np
 from yade import CpmPhys, O
@@ -40,6 +41,7 @@ _VECTORS = {"normal": lambda contact: contact.geom.normal, "increment": lambda c
 """Vectors of a bond that looks read, and partly write, for many bonds at once."""
 
 
+@cache  # A second search would find what the first one has left in memory.
 def _behind_slip():
     """Where YADE keeps omega and the cohesion, which it does not give by reference, behind epsTPl."""
     phys, omega, cohesion = CpmPhys(), 0.123456789, 0.987654321
@@ -143,6 +145,8 @@ class CpmBonds(BondLog):
             array[numbers] = 0.0
         self.active[numbers] = False
         self._follow(numbers)
+        # Not of bonds that have left: their memory is no longer theirs.
+        self._prepare()
 
     def _follow(self, numbers):
         for n in numbers.tolist():
@@ -174,7 +178,9 @@ class CpmBonds(BondLog):
         self.before = numbers, self.vectors.read("slipped", numbers), self.vectors.read("shear_force", numbers)
 
     def _sample(self):
-        numbers, slipped, force_before = self.before
+        # The memory of bonds that have separated meanwhile is no longer theirs.
+        there = self.status[self.before[0]] != SEPARATED
+        numbers, slipped, force_before = (before[there] for before in self.before)
         force = self.vectors.read("shear_force", numbers)
         # YADE leaves the slip of a bond without any shear strength as it is.
         let_go = force_before.any(axis=1) & ~force.any(axis=1)
