@@ -4,10 +4,10 @@ from collections import namedtuple
 from functools import cache
 
 import numpy as np
-from yade import CpmPhys, O
+from yade import CpmPhys, O, ScGeom
 
 from rockwear.engines.bond_log import BROKEN, INTACT, SEPARATED, BondLog, Crack
-from rockwear.engines.memory import Vectors, offset
+from rockwear.engines.memory import Vectors, check, offset
 
 LOOK_PERIOD = 10
 """Steps between looks at all bonds; the work of slip is sampled twice as often."""
@@ -43,11 +43,13 @@ _VECTORS = {"normal": lambda contact: contact.geom.normal, "increment": lambda c
 
 @cache  # A second search would find what the first one has left in memory.
 def _behind_slip():
-    """Where YADE keeps omega and the cohesion, which it does not give by reference, behind epsTPl."""
+    """Where YADE keeps omega and the cohesion, which it does not give by reference, behind epsTPl. Raises
+    ParameterError where memory is not what Python shows."""
     phys, omega, cohesion = CpmPhys(), 0.123456789, 0.987654321
+    check(_Contact(None, ScGeom(), phys), _VECTORS)
     phys.isCohesive, phys.epsCrackOnset, phys.epsFracture, phys.undamagedCohesion = True, 1e-4, 1e-2, cohesion
     phys.setDamage(omega)
-    return offset(phys.epsTPl, omega), offset(phys.epsTPl, cohesion)
+    return offset(phys.epsTPl, "omega", phys.omega), offset(phys.epsTPl, "cohesion", cohesion)
 
 
 def _dot(a, b):

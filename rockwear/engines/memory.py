@@ -3,10 +3,18 @@
 YADE gives a vector of a body or contact by reference, and each costs Python a microsecond to read. An instance of
 Boost.Python, through which it does so, points to a holder, and the holder to the vector. The places of many vectors
 make an index into the process's memory, seen as one array of numbers, and numpy gathers them fifty times as fast.
+
+Where this is so depends on the versions of Python, Boost and YADE. `check` tries it on one object before any place is
+used, through the process's memory file, where a wrong address is an error and no crash.
 """
 import ctypes
+import os
+import sys
 
 import numpy as np
+from yade import config
+
+from rockwear.kernels.checks import require
 
 INSTANCE, HOLDER = 40, 16
 """Bytes from the beginning of an instance to its pointer to the holder (behind count, type, size, dictionary and weak
@@ -15,6 +23,8 @@ SIZE = 8
 """Bytes of a number, and of a pointer."""
 MEMORY = np.frombuffer((ctypes.c_double * 2**44).from_address(SIZE))
 """All memory that a process of 64 bits may have, but for its first number."""
+MARKS = (0.31415926535, -9.87654321e-3, 5.55e11)
+"""Written by Python and looked for in memory; no vector of YADE's has them."""
 
 
 def _pointer(address):
@@ -26,16 +36,57 @@ def place(vector):
     return _pointer(_pointer(id(vector) + INSTANCE) + HOLDER) // SIZE - 1
 
 
+def _peek(address, count, kind=float):
+    """(count,) numbers from an address of which nothing is known; fewer, or none, where there is no memory."""
+    try:
+        with open("/proc/self/mem", "rb", buffering=0) as memory:
+            found = os.pread(memory.fileno(), SIZE * count, address)
+    except (OSError, OverflowError):
+        return np.empty(0, kind)
+    return np.frombuffer(found[:len(found) // SIZE * SIZE], kind)
+
+
+def _found(vector, values):
+    """Whether memory has these values (3,) where a vector should lie."""
+    address = id(vector)
+    for behind in (INSTANCE, HOLDER):
+        pointer = _peek(address + behind, 1, np.uint64)
+        if not len(pointer):
+            return False
+        address = int(pointer[0])
+    return address % SIZE == 0 and np.array_equal(_peek(address, 3), values)
+
+
+def _require(condition, what):
+    require(condition, "YADE", config.version, f"one that gives its vectors by reference: {what} does not lie in "
+            f"memory where rockwear looks for it (Python {sys.version.split()[0]}); another bond_law does without")
+
+
+def check(found, of):
+    """Raise ParameterError unless memory has what Python writes into the vectors of an object of YADE's.
+
+    of: {name: function that gives the vector of the object `found`}. Its vectors are left as they are.
+    """
+    for name, vector in of.items():
+        before = list(vector(found))
+        for k, mark in enumerate(MARKS):
+            vector(found)[k] = mark
+        same = list(vector(found)) == list(MARKS) and _found(vector(found), MARKS)
+        for k, value in enumerate(before):
+            vector(found)[k] = value
+        _require(same, name)
+
+
 REACH = 64
 """Numbers before and after a vector among which another one of its object is looked for."""
 
 
-def offset(vector, value):
-    """How far behind a vector that YADE gave by reference the only such value lies. Raises RuntimeError."""
-    first = place(vector)
-    found = np.flatnonzero(MEMORY[first - REACH:first + REACH] == value) - REACH
-    if len(found) != 1:
-        raise RuntimeError(f"{value} is {len(found)} times near a vector of YADE's, not once")
+def offset(vector, name, value):
+    """How far behind a vector that YADE gave by reference its object's number `name` lies, the only one of this value.
+    Raises ParameterError."""
+    first = SIZE * (place(vector) + 1)
+    found = np.flatnonzero(_peek(first - SIZE * REACH, 2 * REACH) == value) - REACH
+    _require(len(found) == 1, name)
     return int(found[0])
 
 

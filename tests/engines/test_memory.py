@@ -1,0 +1,32 @@
+"""YADE's vectors in memory: what is read and written is Python's; another layout is refused in one line."""
+import pytest
+
+from tests.running import checks_of
+
+
+@pytest.fixture(scope="module")
+def found(tmp_path_factory):
+    return checks_of("memory", tmp_path_factory.mktemp("memory"))
+
+
+def test_vectors_are_read_and_written_as_python_gives_them(found):
+    assert found["wrong"] == []
+
+
+def test_numbers_behind_a_vector_are_those_of_python(found):
+    for in_memory, in_python in found["behind"].values():
+        assert in_memory == in_python
+    assert len({tuple(pair[0]) for pair in found["behind"].values()}) == 3
+
+
+def test_the_check_leaves_vectors_as_they_are(found):
+    assert found["as it is"] is None and found["by reference"] is None
+    assert found["left"] == [0.6, 0.0, -0.8]
+
+
+def test_another_layout_is_refused_in_one_line_and_never_a_wrong_number(found):
+    said = [*found["other layouts"], found["by value"], found["out of reach"]]
+    assert len(said) == 17
+    for line in said:
+        assert line.startswith("YADE = ") and "must be one that gives its vectors by reference" in line
+        assert "\n" not in line
