@@ -4,8 +4,8 @@ OUT     := out
 SUDO    := $(if $(filter 0,$(shell id -u)),,sudo)
 
 TO_RUN  := yade python3-numpy python3-scipy python3-matplotlib python3-pil python3-stl
-TO_TEST := python3-pytest python3-pytest-xdist $(TO_SWEEP)
 TO_SWEEP := python3-distributed
+TO_TEST := python3-pytest python3-pytest-xdist $(TO_SWEEP)
 TO_LINT := python3-flake8
 
 .DEFAULT_GOAL := help
