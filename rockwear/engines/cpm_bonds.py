@@ -7,10 +7,11 @@ import numpy as np
 from yade import CpmPhys, O, ScGeom
 
 from rockwear.engines.bond_log import BROKEN, INTACT, SEPARATED, BondLog, Crack
-from rockwear.engines.memory import Vectors, check, offset
+from rockwear.engines.memory import TRIED, Places, check, offset
+from rockwear.kernels.bond_laws.cohesive import softening_energy
 
 LOOK_PERIOD = 10
-"""Steps between looks at all bonds; the work of slip is sampled twice as often."""
+"""Steps between looks at all bonds."""
 STRAIGHT = 10
 """Points on the path that a bond is taken to have come before the first look that finds it softened or slipped."""
 SPENT = 1.0 - 1e-6
@@ -39,34 +40,52 @@ _VECTORS = {"normal": lambda contact: contact.geom.normal, "increment": lambda c
             "shear_force": lambda contact: contact.phys.shearForce,
             "strain": lambda contact: contact.phys.epsT, "slipped": lambda contact: contact.phys.epsTPl}
 """Vectors of a bond that looks read, and partly write, for many bonds at once."""
+_GROUPS = {"slip": ("slipped", "shear_force"), "damage": ("slipped", "shear_force", "omega"),
+           "forces": ("normal", "normal_force", "shear_force")}
+"""What is read together."""
+SLIPPED, SHEAR, OMEGA = slice(0, 3), slice(3, 6), 6
+"""Columns of the groups "slip" and "damage"."""
 
 
-@cache  # A second search would find what the first one has left in memory.
+@cache
 def _behind_slip():
     """Where YADE keeps omega and the cohesion, which it does not give by reference, behind epsTPl. Raises
     ParameterError where memory is not what Python shows."""
-    phys, omega, cohesion = CpmPhys(), 0.123456789, 0.987654321
-    check(_Contact(None, ScGeom(), phys), _VECTORS)
-    phys.isCohesive, phys.epsCrackOnset, phys.epsFracture, phys.undamagedCohesion = True, 1e-4, 1e-2, cohesion
-    phys.setDamage(omega)
-    return offset(phys.epsTPl, "omega", phys.omega), offset(phys.epsTPl, "cohesion", cohesion)
+    tried = [CpmPhys(isCohesive=True, epsCrackOnset=1e-4, epsFracture=1e-2, undamagedCohesion=0.1 + k)
+             for k in range(TRIED)]
+    check(_Contact(None, ScGeom(), tried[0]), _VECTORS)
+    for k, phys in enumerate(tried):
+        phys.setDamage(0.123 + 0.1 * k)
+    slipped = [phys.epsTPl for phys in tried]
+    return (offset("omega", slipped, [phys.omega for phys in tried]),
+            offset("cohesion", slipped, [phys.undamagedCohesion for phys in tried]))
 
 
 def _dot(a, b):
     return np.einsum("ij,ij->i", a, b)
 
 
-def _take_slip(vectors, numbers, stiffness):
+def _differ(a, b):
+    """(k,) bool: whether vectors (k, 3) differ."""
+    return (a[:, 0] != b[:, 0]) | (a[:, 1] != b[:, 1]) | (a[:, 2] != b[:, 2])
+
+
+def _vanish(a):
+    """(k,) bool: whether vectors (k, 3) are 0."""
+    return (a[:, 0] == 0.0) & (a[:, 1] == 0.0) & (a[:, 2] == 0.0)
+
+
+def _take_slip(places, numbers, normal, force, stiffness):
     """Take the slip out of YADE's shear strains of bonds and leave the elastic part, in the plane of the contact.
-    stiffness: N, shear force over strain. -> (k,) the slip, a strain."""
-    normal, force = vectors.read("normal", numbers), vectors.read("shear_force", numbers)
+    normal, force (N): (k, 3), of the contact and the shear force; stiffness: N, force over strain. -> (k,) the slip, a
+    strain."""
     elastic = force - normal * _dot(force, normal)[:, None]
     length = np.sqrt(_dot(elastic, elastic))
     # As long as the force, nearly in the plane of which it lies.
     elastic *= (np.sqrt(_dot(force, force)) / np.where(length > 0.0, -length * stiffness, 1.0))[:, None]
-    slip = vectors.read("strain", numbers) - elastic
-    vectors.write("strain", numbers, elastic)
-    vectors.write("slipped", numbers, 0.0)
+    slip = places.read("strain", numbers) - elastic
+    places.write("strain", numbers, elastic)
+    places.write("slipped", numbers, 0.0)
     return np.sqrt(_dot(slip, slip))
 
 
@@ -92,24 +111,30 @@ class CpmBonds(BondLog):
 
     Vectors are read at once, by engines.memory: looks at single bonds cost a third of YADE's own time.
 
-    period: steps between two looks; 1: in every step. The engine itself is visited in every step.
+    period: steps between two looks, and between two samples; 1: in every step. The engine itself is visited in every
+    step.
     """
 
     def __init__(self, *, period=LOOK_PERIOD, **common):
         super().__init__(period=1, **common)
         count = len(self.pairs)
-        self.between_looks, self.between_samples = period, period // 2 if period % 2 == 0 else period
+        self.between_looks = self.between_samples = period
         self.dissipated, self.by_slip, self.slip_taken = np.zeros(count), np.zeros(count), np.zeros(count)
         self.omega, self.active = np.zeros(count), np.zeros(count, bool)
         """Damage at the last look; whether the bond had slipped or softened by then."""
-        self.kn, self.kt, self.Rt, self.mu = (
-            np.array([getattr(law, name) for law in self.laws]) for name in ("kn", "kt", "Rt", "mu"))
+        self.kn, self.kt, self.Rn, self.Rt, self.mu = (
+            np.array([getattr(law, name) for law in self.laws]) for name in ("kn", "kt", "Rn", "Rt", "mu"))
         # Unbreakable bonds within grains have none of these.
-        self.slip_end, self.coupling = (np.array([getattr(law, name, none) for law in self.laws])
-                                        for name, none in (("slip_end", math.inf), ("coupling", 0.0)))
+        self.onset, self.gone, self.slip_end, self.coupling = (
+            np.array([getattr(law, name, none) for law in self.laws])
+            for name, none in (("onset", math.nan), ("gone", math.nan), ("slip_end", math.inf), ("coupling", 0.0)))
         # Lengths (m) of the bonds that are there.
         self.contacts, self.lengths, self.strains = {}, np.zeros(count), None
-        self.vectors, (self.omega_behind, self.cohesion_behind) = Vectors(count, _VECTORS), _behind_slip()
+        omega, cohesion = _behind_slip()
+        self.places = Places(count, vectors=_VECTORS, groups=_GROUPS,
+                             numbers={"omega": ("slipped", omega), "cohesion": ("slipped", cohesion)})
+        self.rising = np.zeros(0, int)
+        """Bonds whose damage rose between the last two looks, by opening: their cohesion is set in every step."""
 
     @staticmethod
     def reference_overlap(phys):
@@ -137,8 +162,8 @@ class CpmBonds(BondLog):
             for n, omega in zip(numbers.tolist(), omegas.tolist()):
                 if omega:
                     self.contacts[n].phys.setDamage(omega)
-            self.vectors.write("strain", numbers, strains)
-            self.vectors.write("slipped", numbers, slipped)
+            self.places.write("strain", numbers, strains)
+            self.places.write("slipped", numbers, slipped)
             self.strains = None
         self._prepare()
 
@@ -151,66 +176,82 @@ class CpmBonds(BondLog):
         self._prepare()
 
     def _follow(self, numbers):
+        found = []
         for n in numbers.tolist():
             interaction = O.interactions[tuple(self.pairs[n].tolist())]
-            contact = self.contacts[n] = _Contact(interaction, interaction.geom, interaction.phys)
-            self.lengths[n] = contact.phys.refLength
-            self.vectors.find(n, contact)
+            found.append(_Contact(interaction, interaction.geom, interaction.phys))
+            self.lengths[n] = found[-1].phys.refLength
+        self.contacts.update(zip(numbers.tolist(), found))
+        self.places.find(numbers, found)
 
     def act(self):
         """Sample the work of slip and look at the bonds, each in its turn."""
-        if O.iter % self.between_samples == 0:
-            self._sample()
         if O.iter % self.between_looks == 0:
-            self.look_at_all()
+            self._look(O.iter % self.between_samples == 0)
+        elif O.iter % self.between_samples == 0:
+            there = np.flatnonzero(self.status != SEPARATED)
+            self._sample(there, self.places.read("damage", there))
         if (O.iter + 1) % self.between_samples == 0:
             self._prepare()
-        self._weaken()
+        self._weaken(self.rising)
 
-    def _weaken(self):
+    def _weaken(self, numbers):
         """Set the cohesion in YADE, of which it takes the part 1 - omega."""
-        numbers = np.flatnonzero(self.active & (self.coupling > 0.0) & (self.status != SEPARATED))
-        omega = self.vectors.number("slipped", self.omega_behind, numbers)
-        self.vectors.set_number("slipped", self.cohesion_behind, numbers,
-                                self.Rt[numbers] / (1.0 - self.coupling[numbers] * omega))
+        if len(numbers):
+            left = 1.0 - self.coupling[numbers, None] * self.places.read("omega", numbers)
+            self.places.write("cohesion", numbers, self.Rt[numbers, None] / left)
 
     def _prepare(self):
         """Keep slip and force (N) of the bonds as they are before a step whose work is sampled."""
         numbers = np.flatnonzero(self.active & (self.status != SEPARATED))
-        self.before = numbers, self.vectors.read("slipped", numbers), self.vectors.read("shear_force", numbers)
+        self.before = numbers, self.places.read("slip", numbers)
+        self.rising = self.rising[self.status[self.rising] != SEPARATED]
 
-    def _sample(self):
+    def _sample(self, there, now):
+        """The work of slip of the last step. there: (k,) bonds; now: what _GROUPS["damage"] says of them."""
+        numbers, before = self.before
+        at = np.zeros(len(self.pairs), int)
+        at[there] = np.arange(1, len(there) + 1)
+        at = at[numbers] - 1
         # The memory of bonds that have separated meanwhile is no longer theirs.
-        there = self.status[self.before[0]] != SEPARATED
-        numbers, slipped, force_before = (before[there] for before in self.before)
-        force = self.vectors.read("shear_force", numbers)
+        if (at < 0).any():
+            numbers, before, at = numbers[at >= 0], before[at >= 0], at[at >= 0]
+        now = now[at]
         # YADE leaves the slip of a bond without any shear strength as it is.
-        let_go = force_before.any(axis=1) & ~force.any(axis=1)
-        slid = np.flatnonzero((self.vectors.read("slipped", numbers) != slipped).any(axis=1) | let_go)
+        let_go = _vanish(now[:, SHEAR]) & ~_vanish(before[:, SHEAR])
+        slid = np.flatnonzero(_differ(now[:, SLIPPED], before[:, SLIPPED]) | let_go)
         if not len(slid):
             return
-        numbers, force, force_before = numbers[slid], force[slid], force_before[slid]
-        work = -_dot(force + force_before, self.vectors.read("increment", numbers))
+        numbers, force, force_before = numbers[slid], now[slid, SHEAR], before[slid, SHEAR]
+        work = -_dot(force + force_before, self.places.read("increment", numbers))
         stored = (_dot(force, force) - _dot(force_before, force_before)) / self.kt[numbers]
         self._dissipate(numbers, 0.5 * self.between_samples * (work - stored), True)
 
     def look_at_all(self):
         """Bring damage and status of all bonds up to date."""
+        self._look(False)
+
+    def _look(self, sampled):
         there = np.flatnonzero(self.status != SEPARATED)
-        omega = self.vectors.number("slipped", self.omega_behind, there)
-        changed = (omega != self.omega[there]) | self.vectors.read("slipped", there).any(axis=1)
-        active = self.active[there]
-        changed[active] |= ~self.vectors.read("shear_force", there[active]).any(axis=1)
+        now = self.places.read("damage", there)
+        if sampled:
+            self._sample(there, now)
+        omega, let_go = now[:, OMEGA], self.active[there] & _vanish(now[:, SHEAR])
+        changed = np.flatnonzero((omega != self.omega[there]) | ~_vanish(now[:, SLIPPED]) | let_go)
         numbers, omega = there[changed], omega[changed]
+        self.rising = numbers[:0]
         if not len(numbers):
             return
         self._begin(numbers[~self.active[numbers]])
         self._soften(numbers, omega)
         numbers = numbers[omega < 1.0]
-        slip = _take_slip(self.vectors, numbers, self.kt[numbers] * self.lengths[numbers]) * self.lengths[numbers]
+        forces = self.places.read("forces", numbers)
+        slip = _take_slip(self.places, numbers, forces[:, :3], forces[:, 6:],
+                          self.kt[numbers] * self.lengths[numbers]) * self.lengths[numbers]
         damaged = (slip > 0.0) & (self.omega[numbers] < SPENT) & (self.slip_end[numbers] < math.inf)
         if damaged.any():
-            self._damage(numbers[damaged], slip[damaged])
+            self._damage(numbers[damaged], slip[damaged], forces[damaged])
+        self._weaken(numbers[self.coupling[numbers] > 0.0])
 
     def _begin(self, numbers):
         """These bonds are found to have slipped or softened."""
@@ -221,33 +262,37 @@ class CpmBonds(BondLog):
     def _soften(self, numbers, omega):
         """What YADE has raised the damage of these bonds to."""
         before, self.omega[numbers] = self.omega[numbers], omega
-        rising = omega > before
-        for n, was, now in zip(numbers[rising].tolist(), before[rising].tolist(), omega[rising].tolist()):
-            self._dissipate(n, self.laws[n].dissipated(min(now, 1.0)) - self.laws[n].dissipated(was), False)
-            if now >= 1.0:
-                # Its last shear force went with it: YADE leaves that of the step before.
-                self._dissipate(n, 0.5 * self.contacts[n].phys.shearForce.squaredNorm() / self.kt[n], True)
-                self._log(n)
-                self._separate(n)
+        rises = omega > before
+        rising, gone = numbers[rises], numbers[rises & (omega >= 1.0)]
+        of = dict(Rn=self.Rn[rising], onset=self.onset[rising], gone=self.gone[rising])
+        spent = softening_energy(np.minimum(omega[rises], 1.0), **of) - softening_energy(before[rises], **of)
+        self._dissipate(rising, spent, False)
+        self.rising = rising[(omega[rises] < 1.0) & (self.coupling[rising] > 0.0)]
+        for n in gone.tolist():
+            # Its last shear force went with it: YADE leaves that of the step before.
+            self._dissipate(n, 0.5 * self.contacts[n].phys.shearForce.squaredNorm() / self.kt[n], True)
+            self._log(n)
+            self._separate(n)
 
-    def _damage(self, numbers, slip):
+    def _damage(self, numbers, slip, forces):
         """Raise the damage of bonds by their slip (m). In the next step their forces fall to what the law then allows;
-        what that dissipates is booked now, and the forces, which YADE only gives out, are those of then."""
+        what that dissipates is booked now, and the forces, which YADE only gives out, are those of then.
+        forces: what _GROUPS says of them."""
         before, coupling = self.omega[numbers], self.coupling[numbers]
         left = np.maximum((1.0 - before) / (1.0 - coupling * before) - slip / self.slip_end[numbers], 0.0)
         omega = np.minimum((1.0 - left) / (1.0 - coupling * left), SPENT)
-        normal, shear = self.vectors.read("normal_force", numbers), self.vectors.read("shear_force", numbers)
-        Fn, Ft = -_dot(normal, self.vectors.read("normal", numbers)), np.sqrt(_dot(shear, shear))
+        normal, shear = forces[:, 3:6], forces[:, 6:]
+        Fn, Ft = -_dot(normal, forces[:, :3]), np.sqrt(_dot(shear, shear))
         kept = np.where(Fn > 0.0, (1.0 - omega) / (1.0 - before), 1.0)
         self._dissipate(numbers, 0.5 * Fn**2 * (1.0 - kept) / (self.kn[numbers] * (1.0 - before)), False)
-        self.vectors.write("normal_force", numbers, normal * kept[:, None])
+        self.places.write("normal_force", numbers, normal * kept[:, None])
         # Where every step is sampled, the slip of the next one is in its sample.
-        if self.between_samples > 1:
+        if self.between_looks > 1:
             limit = np.maximum(left * self.Rt[numbers] - self.mu[numbers] * kept * Fn, 0.0)
             falls = Ft > limit
             fallen = numbers[falls]
             self._dissipate(fallen, 0.5 * (Ft[falls]**2 - limit[falls]**2) / self.kt[fallen], True)
-            self.vectors.write("shear_force", fallen, shear[falls] * (limit[falls] / Ft[falls])[:, None])
+            self.places.write("shear_force", fallen, shear[falls] * (limit[falls] / Ft[falls])[:, None])
         for n, damage in zip(numbers.tolist(), omega.tolist()):
             phys = self.contacts[n].phys
             phys.setDamage(damage)
@@ -288,6 +333,8 @@ class CpmBonds(BondLog):
             self._separate(n)
         for n in np.flatnonzero(self.omega * (self.status != SEPARATED)).tolist():
             self.contacts[n].phys.setDamage(self.contacts[n].phys.omega)
+        # A restart does not know them.
+        self.rising = self.rising[:0]
         self._prepare()
 
     def _shift(self, n, shift):
@@ -303,9 +350,9 @@ class CpmBonds(BondLog):
         """Strain energy (J) of all bonds, sum of Fn^2/2kn + Ft^2/2kt with the secant kn of softened ones."""
         self.look_at_all()
         n = np.flatnonzero(self.status != SEPARATED)
-        normal, shear = self.vectors.read("normal_force", n), self.vectors.read("shear_force", n)
-        kept = np.where(_dot(normal, self.vectors.read("normal", n)) < 0.0, 1.0 - self.omega[n], 1.0)
-        return math.fsum(0.5 * (_dot(normal, normal) / (self.kn[n] * kept) + _dot(shear, shear) / self.kt[n]))
+        normal, force, shear = np.split(self.places.read("forces", n), 3, axis=1)
+        kept = np.where(_dot(force, normal) < 0.0, 1.0 - self.omega[n], 1.0)
+        return math.fsum(0.5 * (_dot(force, force) / (self.kn[n] * kept) + _dot(shear, shear) / self.kt[n]))
 
     def take_slip_work(self, particles):
         work, self.slip_taken = 0.5 * (self.by_slip - self.slip_taken), self.by_slip.copy()
@@ -315,7 +362,7 @@ class CpmBonds(BondLog):
         there = np.flatnonzero(self.status != SEPARATED)
         return {**super().state(), "dissipated": self.dissipated.copy(), "by_slip": self.by_slip.copy(),
                 "slip_taken": self.slip_taken.copy(), "omega": self.omega.copy(), "active": self.active.copy(),
-                "strain": self.vectors.read("strain", there), "plastic_strain": self.vectors.read("slipped", there)}
+                "strain": self.places.read("strain", there), "plastic_strain": self.places.read("slipped", there)}
 
     def restore(self, state):
         super().restore(state)

@@ -10,9 +10,10 @@ used, through the process's memory file, where a wrong address is an error and n
 import ctypes
 import os
 import sys
+from functools import cache
 
 import numpy as np
-from yade import config
+from yade import FrictPhys, Interaction, O, ScGeom, config
 
 from rockwear.kernels.checks import require
 
@@ -23,6 +24,8 @@ SIZE = 8
 """Bytes of a number, and of a pointer."""
 MEMORY = np.frombuffer((ctypes.c_double * 2**44).from_address(SIZE))
 """All memory that a process of 64 bits may have, but for its first number."""
+WORDS = MEMORY.view(np.int64)
+"""The same as integers: pointers, counts, numbers of bodies."""
 MARKS = (0.31415926535, -9.87654321e-3, 5.55e11)
 """Written by Python and looked for in memory; no vector of YADE's has them."""
 
@@ -31,9 +34,14 @@ def _pointer(address):
     return ctypes.c_uint64.from_address(address).value
 
 
-def place(vector):
-    """Index in MEMORY of the first component of a vector that YADE gave by reference."""
-    return _pointer(_pointer(id(vector) + INSTANCE) + HOLDER) // SIZE - 1
+def place(found):
+    """Index in MEMORY of an object of YADE's, or of the first component of a vector that YADE gave by reference."""
+    return _pointer(_pointer(id(found) + INSTANCE) + HOLDER) // SIZE - 1
+
+
+def pointed(pointers):
+    """(k,) indices in MEMORY of what these pointers (k,) point to."""
+    return (pointers >> 3) - 1
 
 
 def _peek(address, count, kind=float):
@@ -78,45 +86,106 @@ def check(found, of):
 
 
 REACH = 64
-"""Numbers before and after a vector among which another one of its object is looked for."""
+"""Numbers before and after an object or a vector among which others of the object are looked for."""
 
 
-def offset(vector, name, value):
-    """How far behind a vector that YADE gave by reference its object's number `name` lies, the only one of this value.
-    Raises ParameterError."""
-    first = SIZE * (place(vector) + 1)
-    found = np.flatnonzero(_peek(first - SIZE * REACH, 2 * REACH) == value) - REACH
-    _require(len(found) == 1, name)
-    return int(found[0])
+def offset(name, objects, values):
+    """How far behind objects, or vectors that YADE gave by reference, their numbers or integers `values` lie: the one
+    place that holds for all. `name` says what they are. Raises ParameterError."""
+    same = np.ones(2 * REACH, bool)
+    for found, value in zip(objects, values):
+        near = _peek(SIZE * (place(found) + 1 - REACH), 2 * REACH, np.int64 if isinstance(value, int) else float)
+        # What lies before or behind them may be a copy.
+        same &= near == value if len(near) == len(same) else False
+    behind = np.flatnonzero(same) - REACH
+    _require(len(behind) == 1, name)
+    return int(behind[0])
 
 
-class Vectors:
-    """Vectors of many numbered objects, {name: function that gives the vector of an object}.
+class Places:
+    """Where vectors and numbers of many numbered objects lie, to be read and written together.
 
-    An object must be kept as long as its vectors are read.
+    vectors: {name: function that gives the vector of an object by reference}; numbers: {name: (vector, how far behind
+    it)}, see `offset`; groups: {name: names of vectors and numbers that are read at once}. All of these names can be
+    read and written. An object must be kept as long as it is.
     """
 
-    def __init__(self, count, of):
-        self.of = of
-        self.places = {name: np.zeros((count, 3), np.int64) for name in of}
+    def __init__(self, count, *, vectors, numbers, groups):
+        self.vectors = vectors
+        order = {name: k for k, name in enumerate(vectors)}
+        columns = {name: [(k, along) for along in range(3)] for name, k in order.items()}
+        columns |= {name: [(order[vector], behind)] for name, (vector, behind) in numbers.items()}
+        columns |= {name: [column for part in parts for column in columns[part]] for name, parts in groups.items()}
+        self.columns = {name: np.array(of).T for name, of in columns.items()}
+        self.places = {name: np.zeros((count, len(of)), np.int64) for name, of in columns.items()}
 
-    def find(self, n, found):
-        """The object n is `found` from now on."""
-        for name, vector in self.of.items():
-            self.places[name][n] = place(vector(found)) + np.arange(3)
+    def find(self, numbers, objects):
+        """The objects of these numbers (k,) are `objects` from now on."""
+        first = np.array([[place(vector(found)) for vector in self.vectors.values()] for found in objects], np.int64)
+        for name, (vector, along) in self.columns.items():
+            self.places[name][numbers] = first.reshape(-1, len(self.vectors))[:, vector] + along
 
     def read(self, name, numbers):
-        """(k, 3) the vectors of these objects (k,)."""
-        return MEMORY[self.places[name][numbers]]
+        """(k, c) what lies under this name in the objects (k,)."""
+        # MEMORY has no end that an index could be beyond, and to look for one takes time.
+        return MEMORY.take(self.places[name].take(numbers, axis=0), mode="wrap")
 
     def write(self, name, numbers, values):
-        """Set the vectors of these objects (k,) to the values (k, 3)."""
-        MEMORY[self.places[name][numbers]] = values
+        """Set it to the values, (k, c) or what broadcasts to it."""
+        MEMORY[self.places[name].take(numbers, axis=0)] = values
 
-    def number(self, name, behind, numbers):
-        """(k,) the number so far behind a vector of each of these objects (k,), see `offset`."""
-        return MEMORY[self.places[name][numbers, 0] + behind]
 
-    def set_number(self, name, behind, numbers, values):
-        """Set the number so far behind a vector of each of these objects (k,) to the values (k,)."""
-        MEMORY[self.places[name][numbers, 0] + behind] = values
+# ---- contacts
+
+TRIED = 5
+"""Contacts that are made to find out how they lie in memory."""
+CONTAINER = 24
+"""Words of YADE's container of contacts among which its list of them is looked for."""
+
+
+def class_of(found):
+    """What all objects of YADE's of one class begin with: the place of its functions."""
+    return int(WORDS[place(found)])
+
+
+@cache
+def contact_layout():
+    """{name: how far behind} of a contact's pointers to its geometry and its constants and of its two bodies; and of
+    the forces (N) and the friction behind the constants of a contact with friction. Raises ParameterError."""
+    geoms, physes = [ScGeom() for _ in range(TRIED)], [FrictPhys() for _ in range(TRIED)][::-1]
+    contacts = [Interaction(id1=11 * k, id2=12345 + k) for k in range(TRIED)]
+    for contact, geom, phys, mark in zip(contacts, geoms, physes, MARKS * TRIED):
+        contact.geom, contact.phys, phys.tangensOfFrictionAngle = geom, phys, mark
+    forces = {"normal_force": lambda phys: phys.normalForce, "shear_force": lambda phys: phys.shearForce}
+    check(physes[0], forces)
+    # A class has its table of functions first.
+    _require(class_of(physes[0]) == class_of(physes[1]) != class_of(geoms[0]), "class")
+    return {"geom": offset("geom", contacts, [SIZE * (place(geom) + 1) for geom in geoms]),
+            "phys": offset("phys", contacts, [SIZE * (place(phys) + 1) for phys in physes]),
+            "bodies": offset("bodies", contacts, [contact.id1 + (contact.id2 << 32) for contact in contacts]),
+            "friction": offset("friction", physes, MARKS * TRIED),
+            **{name: place(vector(physes[0])) - place(physes[0]) for name, vector in forces.items()}}
+
+
+def all_contacts():
+    """(k,) indices in MEMORY of all contacts of the scene, also those that the collider holds possible only.
+
+    What they are read by must be read before YADE's loop goes on, or while Python holds them. Raises ParameterError.
+    """
+    begin, end = WORDS[place(O.interactions) + _list_of_contacts():][:2].tolist()
+    return pointed(WORDS[pointed(begin):pointed(end):2])
+
+
+@cache
+def _list_of_contacts():
+    """Which word of the container of contacts begins the list of them: pairs of pointers, to the contact and to the
+    count of its owners."""
+    contacts, container = [place(contact) for contact in O.interactions.all()], place(O.interactions)
+    for word in range(CONTAINER):
+        begin, end = _peek(SIZE * (container + 1 + word), 2, np.int64).tolist()
+        if end - begin == 2 * SIZE * len(contacts):
+            found = _peek(begin, 2 * len(contacts), np.int64)[::2]
+            if np.array_equal(pointed(found), contacts):
+                return word
+    _require(False, "list of contacts")
+    return None

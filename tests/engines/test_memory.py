@@ -10,13 +10,20 @@ def found(tmp_path_factory):
 
 
 def test_vectors_are_read_and_written_as_python_gives_them(found):
-    assert found["wrong"] == []
+    assert found["wrong"] == [] and found["wrong together"] == []
 
 
 def test_numbers_behind_a_vector_are_those_of_python(found):
     for in_memory, in_python in found["behind"].values():
         assert in_memory == in_python
     assert len({tuple(pair[0]) for pair in found["behind"].values()}) == 3
+
+
+def test_contacts_are_those_of_python(found):
+    for in_memory, in_python in found["contacts"].values():
+        assert in_memory == in_python
+    real = found["contacts"]["real"][0]
+    assert True in real and False in real and found["contacts"]["normal_force"][0][0][0] != 0
 
 
 def test_the_check_leaves_vectors_as_they_are(found):

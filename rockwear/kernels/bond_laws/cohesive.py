@@ -10,6 +10,19 @@ BRITTLEST = 1.001
 """Least opening at the end of softening, over that at the peak."""
 
 
+def opening(softening, *, onset, gone):
+    """Largest opening (m) so far of bonds of these omega > 0. onset, gone: m, at the peak and at the end."""
+    return onset / (1.0 - softening * (1.0 - onset / gone))
+
+
+def softening_energy(softening, *, Rn, onset, gone):
+    """Energy (J) that softening to these omega has dissipated. Rn: N, the strength; onset, gone: m, see `opening`."""
+    u = opening(softening, onset=onset, gone=gone)
+    # Under the curve up to u, less what unloading along the secant gives back.
+    force = Rn * (gone - u) / (gone - onset)
+    return 0.5 * (Rn * onset + (Rn + force) * (u - onset) - force * u)
+
+
 class Cohesive(LinearBondLaw):
     """Tension softens linearly with a fracture energy, shear slips at Coulomb's limit.
 
@@ -73,14 +86,7 @@ class Cohesive(LinearBondLaw):
 
     def opening(self, softening):
         """Largest opening (m) so far of a bond of this omega > 0."""
-        return self.onset / (1.0 - softening * (1.0 - self.onset / self.gone))
-
-    def dissipated(self, softening):
-        """Energy (J) that damage has dissipated at this omega."""
-        u0, uf, u = self.onset, self.gone, self.opening(softening)
-        # Under the curve up to u, less what unloading along the secant gives back.
-        force = self.Rn * (uf - u) / (uf - u0)
-        return 0.5 * (self.Rn * u0 + (self.Rn + force) * (u - u0) - force * u)
+        return opening(softening, onset=self.onset, gone=self.gone)
 
     @property
     def coupling(self):

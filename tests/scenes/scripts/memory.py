@@ -8,7 +8,10 @@ import sys
 from unittest import mock
 
 import numpy as np
-from yade import CpmPhys, ScGeom, Vector3
+from yade import (
+    Bo1_Sphere_Aabb, CpmPhys, ForceResetter, FrictPhys, Ig2_Sphere_Sphere_ScGeom, InsertionSortCollider,
+    InteractionLoop, Ip2_FrictMat_FrictMat_FrictPhys, Law2_ScGeom_FrictPhys_CundallStrack, NewtonIntegrator, O, ScGeom,
+    Vector3, utils)
 
 from rockwear.engines import cpm_bonds, memory
 from rockwear.kernels.bond_laws import Cohesive
@@ -21,15 +24,17 @@ VECTORS = cpm_bonds._VECTORS
 
 
 def contacts():
-    """-> contacts of no bodies, their vectors zero, and the Vectors of them."""
+    """-> contacts of no bodies, their vectors zero, and the Places of what they hold."""
     found = [cpm_bonds._Contact(None, ScGeom(), CpmPhys()) for _ in range(COUNT)]
     for contact in found:
         for vector in VECTORS.values():
             write(vector(contact), (0.0, 0.0, 0.0))
-    vectors = memory.Vectors(COUNT, VECTORS)
-    for n, contact in enumerate(found):
-        vectors.find(n, contact)
-    return found, vectors
+    omega, cohesion = cpm_bonds._behind_slip()
+    places = memory.Places(COUNT, vectors=VECTORS, groups=cpm_bonds._GROUPS,
+                           numbers={"omega": ("slipped", omega), "cohesion": ("slipped", cohesion)})
+    places.find(np.array([4, 5, 6]), found[4:])
+    places.find(np.arange(4), found[:4])
+    return found, places
 
 
 def write(vector, values):
@@ -45,11 +50,11 @@ def read_and_written():
     """Names of the vectors of which memory does not read, or write, what Python gives."""
     wrong, numbers = [], np.array([5, 0, 3])
     for name, vector in VECTORS.items():
-        found, vectors = contacts()
+        found, places = contacts()
         for contact, value in zip(found, VALUES.tolist()):
             write(vector(contact), value)
-        read = vectors.read(name, numbers)
-        vectors.write(name, numbers, -VALUES[numbers])
+        read = places.read(name, numbers)
+        places.write(name, numbers, -VALUES[numbers])
         expected = VALUES.copy()
         expected[numbers] *= -1.0
         others = [python(other, found) for key, other in VECTORS.items() if key != name]
@@ -60,20 +65,55 @@ def read_and_written():
 
 def behind():
     """{what: numbers from memory, numbers from Python} of omega and the cohesion, and of a cohesion that is written."""
-    found, vectors = contacts()
-    omega_behind, cohesion_behind = cpm_bonds._behind_slip()
+    found, places = contacts()
     for k, contact in enumerate(found):
         phys = contact.phys
         phys.isCohesive, phys.epsCrackOnset, phys.epsFracture, phys.undamagedCohesion = True, 1e-4, 1e-2, 10.0 + k
         phys.setDamage(0.1 + 0.1 * k)
     numbers = np.array([6, 1])
 
-    def both(name, at):
-        return vectors.number("slipped", at, numbers).tolist(), [getattr(found[n].phys, name) for n in numbers]
+    def both(name, attribute):
+        return places.read(name, numbers)[:, 0].tolist(), [getattr(found[n].phys, attribute) for n in numbers]
 
-    pairs = {"omega": both("omega", omega_behind), "cohesion": both("undamagedCohesion", cohesion_behind)}
-    vectors.set_number("slipped", cohesion_behind, numbers, np.array([3.0, 4.0]))
-    return {**pairs, "written": ([3.0, 4.0], both("undamagedCohesion", cohesion_behind)[1])}
+    pairs = {"omega": both("omega", "omega"), "cohesion": both("cohesion", "undamagedCohesion")}
+    places.write("cohesion", numbers, np.array([[3.0], [4.0]]))
+    return {**pairs, "written": ([3.0, 4.0], both("cohesion", "undamagedCohesion")[1])}
+
+
+def together():
+    """Whether a group gives what its vectors and numbers give one by one."""
+    found, places = contacts()
+    for contact, value in zip(found, VALUES):
+        for k, vector in enumerate(VECTORS.values()):
+            write(vector(contact), (value * (k + 1)).tolist())
+    numbers = np.array([2, 6, 0, 1])
+    return [name for name, parts in cpm_bonds._GROUPS.items() if not np.array_equal(
+        places.read(name, numbers), np.hstack([places.read(part, numbers) for part in parts]), equal_nan=True)]
+
+
+def contacts_of_yade():
+    """{what: from memory, from Python} of the contacts of a row of discs, every other one of which touches the next."""
+    O.reset()
+    O.bodies.append([utils.sphere((1.5 * k + (k % 2), 0, 0), 1.0) for k in range(9)])
+    O.engines = [ForceResetter(), InsertionSortCollider([Bo1_Sphere_Aabb(aabbEnlargeFactor=1.5)]), InteractionLoop(
+        [Ig2_Sphere_Sphere_ScGeom()], [Ip2_FrictMat_FrictMat_FrictPhys()], [Law2_ScGeom_FrictPhys_CundallStrack()]),
+        NewtonIntegrator()]
+    O.step()
+    words, layout, found = memory.WORDS, memory.contact_layout(), O.interactions.all()
+    places = memory.all_contacts()
+    bodies = words[places + layout["bodies"]]
+    pairs = np.column_stack([bodies & 0xffffffff, bodies >> 32]).tolist()
+    phys = words[places + layout["phys"]]
+    real = (phys != 0) & (words[places + layout["geom"]] != 0)
+    phys = memory.pointed(phys[real])
+    forces = {name: memory.MEMORY[phys[:, None] + layout[name] + np.arange(3)].tolist()
+              for name in ("normal_force", "shear_force")}
+    there = [i.phys for i in found if i.isReal]
+    return {"bodies": (pairs, [[i.id1, i.id2] for i in found]), "real": (real.tolist(), [i.isReal for i in found]),
+            "normal_force": (forces["normal_force"], [list(p.normalForce) for p in there]),
+            "shear_force": (forces["shear_force"], [list(p.shearForce) for p in there]),
+            "friction": (memory.MEMORY[phys + layout["friction"]].tolist(), [p.tangensOfFrictionAngle for p in there]),
+            "class": (words[phys].tolist(), [memory.class_of(FrictPhys())] * len(there))}
 
 
 def refused(**constants):
@@ -103,7 +143,8 @@ def left_as_it_was():
 
 
 checks = {
-    "wrong": read_and_written(), "behind": behind(), "left": left_as_it_was(),
+    "wrong": read_and_written(), "wrong together": together(), "behind": behind(), "left": left_as_it_was(),
+    "contacts": contacts_of_yade(),
     "as it is": refused(INSTANCE=memory.INSTANCE),
     "other layouts": [refused(INSTANCE=i, HOLDER=h) for i in (24, 32, 40, 48) for h in (0, 8, 16, 24)
                       if (i, h) != (40, 16)],
