@@ -116,7 +116,9 @@ class RockWindow:
         y = rock_states(rock)[left, 1]
         # What is above the groove may be chips.
         left = left[y < rock.height - 2 * self.scene.depth_of_cut]
-        self._hold(left, (-1.0, 0.0), float(rock.positions[left, 1].max()), self.behind, left)
+        # In a low window there may be none.
+        if len(left):
+            self._hold(left, (-1.0, 0.0), float(rock.positions[left, 1].max()), self.behind, left)
         self._hold(right, (1.0, 0.0), rock.height, rock.width - self.behind, right)
         self.held = np.concatenate([left, right])
 
