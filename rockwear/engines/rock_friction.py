@@ -1,10 +1,22 @@
 """Friction between rock particles."""
+from functools import cache
+
 import numpy as np
 
 from yade import CpmPhys, InsertionSortCollider, JCFpmPhys, O
 
 from rockwear.engines.access import SLIDING, body_erased, contact_energy, yade_engine, yade_friction_law
 from rockwear.engines.base import FORCES, Engine
+from rockwear.engines.memory import MEMORY, WORDS, all_contacts, class_of, contact_layout, pointed
+
+ALONG = np.arange(3)[:, None]
+"""Components of a vector."""
+
+
+@cache
+def bond_classes():
+    """What begins the constants of a bond in memory."""
+    return [class_of(JCFpmPhys()), class_of(CpmPhys())]
 
 
 class RockContacts(Engine):
@@ -22,35 +34,46 @@ class RockContacts(Engine):
         self.particles = len(motion.per_mass)
 
     def connect(self):
+        self.held = {}
         self.find_contacts()
 
     def find_contacts(self):
         """Find the contacts between rock particles that are no bonds, and the pairs that may touch before the collider
         runs again or a bond parts."""
         self.collider = yade_engine(InsertionSortCollider)
-        self.seen, self.seen_step = self.collider.numAction, O.iter
+        self.seen = self.collider.numAction
         self.bonds.parted.clear()
-        self._take(O.interactions.all())
+        # What Python holds keeps its place in memory.
+        before, self.held = self.held, {}
+        for place, pair in self._possible():
+            interaction = before.get(place)
+            # YADE would end where it is asked for contacts of an erased body.
+            if not interaction and O.bodies[pair[0]] and O.bodies[pair[1]]:
+                interaction = O.interactions[pair]
+            if interaction:
+                self.held[place] = interaction
+        self.possible = list(self.held.values())
+        self.places = np.fromiter(self.held, np.int64, len(self.held))
 
-    def _take(self, found):
-        kept = {(i.id1, i.id2): i for i in found if not isinstance(i.phys, (JCFpmPhys, CpmPhys))}
-        # A loaded scene has them in another order.
-        self.possible = [kept[pair] for pair in sorted(kept) if max(pair) < self.particles]
+    def _possible(self):
+        """[(place in memory, its two bodies)] of each pair of rock particles that is no bond, ordered by the bodies: a
+        loaded scene has them in another order."""
+        if not len(O.interactions):
+            return []
+        layout, places = contact_layout(), all_contacts()
+        phys, bodies = WORDS.take(places + layout["phys"]), WORDS.take(places + layout["bodies"])
+        first, second = bodies & 0xffffffff, bodies >> 32
+        loose = np.maximum(first, second) < self.particles
+        made = np.flatnonzero(phys)
+        loose[made[np.isin(WORDS.take(pointed(phys[made])), bond_classes())]] = False
+        first, second, places = first[loose], second[loose], places[loose]
+        order = np.lexsort((second, first))
+        return zip(places[order].tolist(), zip(first[order].tolist(), second[order].tolist()))
 
     def _keep_up(self):
-        """Bring `possible` up to date: with the pairs that the collider has found since, and bonds that parted."""
-        found = []
-        if self.collider.numAction != self.seen:
-            found = [i for i in O.interactions.all() if i.iterBorn >= self.seen_step]
-            self.seen, self.seen_step = self.collider.numAction, O.iter
-        if self.bonds.parted:
-            pairs = self.bonds.pairs[self.bonds.parted].tolist()
-            self.bonds.parted.clear()
-            # YADE would end where it is asked for contacts of an erased body.
-            pairs = [(i, j) for i, j in pairs if O.bodies[i] and O.bodies[j] and O.interactions.has(i, j)]
-            found += map(O.interactions.__getitem__, pairs)
-        if found:
-            self._take([*self.possible, *found])
+        """Bring `possible` up to date, where the collider has run or bonds have parted since."""
+        if self.collider.numAction != self.seen or self.bonds.parted:
+            self.find_contacts()
 
     @property
     def contacts(self):
@@ -85,10 +108,20 @@ class RockFriction(RockContacts):
         for interaction, phys in self.bonds.broken.values():
             if phys.crackJointAperture == 0.0:
                 self._sample(interaction, phys, mu, elapsed)
-        for interaction in self.possible:
-            if interaction.isReal:
-                phys = interaction.phys
-                self._sample(interaction, phys, phys.tangensOfFrictionAngle, elapsed)
+        for k in self._sliding().tolist():
+            interaction = self.possible[k]
+            self._sample(interaction, interaction.phys, interaction.phys.tangensOfFrictionAngle, elapsed)
+
+    def _sliding(self):
+        """(k,) which of `possible` slide now; a few more, perhaps, by round-off."""
+        layout = contact_layout()
+        phys = WORDS.take(self.places + layout["phys"])
+        real = np.flatnonzero((phys != 0) & (WORDS.take(self.places + layout["geom"]) != 0))
+        phys = pointed(phys[real])
+        mu = MEMORY.take(phys + layout["friction"])
+        normal, shear = (MEMORY.take(phys + layout[name] + ALONG) for name in ("normal_force", "shear_force"))
+        limit = (SLIDING * mu)**2 * (normal * normal).sum(axis=0)
+        return real[(shear * shear).sum(axis=0) > (1.0 - 1e-12) * limit]
 
     def _sample(self, interaction, phys, mu, elapsed):
         limit, tangential = mu * phys.normalForce.norm(), phys.shearForce.norm()
