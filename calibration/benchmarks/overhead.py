@@ -2,23 +2,20 @@
 
     PYTHONPATH=. yade -n -x -j1 calibration/benchmarks/overhead.py --out DIR [--name value ...]
 
-Both run five times from one saved state ("dead" is YADE's term for an engine that is switched off). Writes the medians
-into DIR/overhead.json. make bench runs it.
+Both run five times from one saved state, see calibration/benchmarks/alive_and_dead.py. Writes the medians into
+DIR/overhead.json. make bench runs it.
 """
 import json
 import os
 import sys
-import time
 from pathlib import Path
-from statistics import median
 
-from yade import O, PyRunner
-
+from calibration.benchmarks.alive_and_dead import alive_and_dead
 from rockwear.run import parameters, servers
 from rockwear.run.main import COMMON
 from rockwear.scenes import cutting
 
-TURNS, STEPS, WARM_UP = 5, 3000, 0.0015
+STEPS, WARM_UP = 3000, 0.0015
 
 
 def main():
@@ -31,21 +28,9 @@ def main():
     scene.build()
     while scene.time < WARM_UP:
         scene.run_chunk()
-    state = scene.state()
-    scene.save(folder, folder)
-    seconds = {"alive": [], "dead": []}
-    for _ in range(TURNS):
-        for kind in seconds:
-            scene.restore(state, folder, folder)
-            for engine in O.engines:
-                engine.dead = isinstance(engine, PyRunner) and kind == "dead"
-            O.run(200, True)
-            begin = time.perf_counter()
-            O.run(STEPS, True)
-            seconds[kind].append((time.perf_counter() - begin) / STEPS)
-    medians = {kind: median(times) for kind, times in seconds.items()}
+    found = alive_and_dead(scene, folder, STEPS)
     (folder / "overhead.json").write_text(json.dumps({
-        "seconds_a_step": seconds, "median": medians, "overhead": medians["alive"] / medians["dead"] - 1,
+        **found,
         "bonds": len(scene.rock.pairs), "cracks": len(scene.bonds.cracks),
         "surface": len(scene.tool.model.erosion.surface)}, indent=1), encoding="utf-8")
     os._exit(0)
