@@ -187,7 +187,12 @@ class AbsorbingBoundary(Engine):
         return {**{name: getattr(self, name).copy() for name in (*COLUMNS, "idle")},
                 "absorbed": self.absorbed, "released": self.released, "power": self.power}
 
-    def restore(self, state):
+    def put_back(self, state):
+        """YADE's scene is again what it was at `state`; the sums of energy go on."""
         for name in (*COLUMNS, "idle"):
             setattr(self, name, state[name].copy())
-        self.absorbed, self.released, self.power = (float(state[name]) for name in ("absorbed", "released", "power"))
+        self.power = float(state["power"])
+
+    def restore(self, state):
+        self.put_back(state)
+        self.absorbed, self.released = (float(state[name]) for name in ("absorbed", "released"))

@@ -113,6 +113,8 @@ class RockAssembly:
     """m, the origin of what pictures show."""
     period = None
     """(2,) m with which the rock repeats itself along x, None where it does not."""
+    stretch = 1.0
+    """(n,) length in the plane over length in `positions`, which another strip than the straight one has."""
 
     def __init__(self, *, positions, radii, width, height, density, pairs, scale=None, depth=None, porosity=None):
         self.positions, self.radii, self.density = np.asarray(positions, float), radii, density
@@ -129,6 +131,8 @@ class RockAssembly:
             self.masses = density / (1 - self.porosity) * volumes
             self.inertias = 0.4 * self.masses * radii**2
         self.fixed, self.side = np.zeros(self.count, bool), np.zeros(self.count, int)
+        self.extent = width, height
+        """(2,) m that pictures in the plane show."""
 
     @property
     def size(self):
@@ -207,6 +211,7 @@ class RockAssembly:
             # Cells inside do not feel the walls; particles of a lattice may lie in those of the box.
             low = self.positions.min(axis=0) - self.radii.max()
             shares = cells(self.positions - low, box=np.ptp(self.positions, axis=0) + 2 * self.radii.max()).volumes
+            shares = self.stretch**self.dimensions * shares
         power = self.dimensions - 1
         return (0.5 * math.pi if power == 1 else 2.0) * float(
             np.sum((shares / self.scale**power)[inside]) / halves[inside].sum())

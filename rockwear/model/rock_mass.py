@@ -1,10 +1,12 @@
 """A rock mass: rock that has no end along the cut, of which a window that moves with the tool is simulated."""
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
 
 from rockwear.kernels import packing
 from rockwear.kernels.elastic_moduli import elastic_moduli
+from rockwear.kernels.strip import StraightStrip
 from rockwear.kernels.voronoi import periodic_cells
 from rockwear.model.rock import RockAssembly, packed_box
 
@@ -23,33 +25,54 @@ apart."""
 
 
 class RockMass(RockAssembly):
-    """Discs of a packing that repeats itself along x with the length of the window, 1 m thick.
+    """Discs of a packing that repeats itself along a strip with the length of the window, 1 m thick.
 
-    A particle keeps its number and its `positions` in the period, 0 <= x < width; `laps` (n,) counts how many periods
-    further on it stands in the rock: its place is x + lap width. The window holds each particle once. It moves by
+    A particle keeps its number and its `positions` in the period of the strip, 0 <= x < width; `laps` (n,) counts how
+    many periods further on it stands in the rock, at x + lap width. Along an arc discs are enlarged as the strip is
+    stretched there. The window holds each particle once. It moves by
     slabs: the slab that lies furthest behind leaves it, and goes in again ahead as untouched rock, with a lap more.
     `crossing` (m,): periods from the first particle of a bond to the image of the second that it is bonded with; the
     bond is there while their laps differ by that. `absent` (n,) bool: particles that are not there: the groove in which
-    the tool begins, chips in the way.
+    the tool begins, what is above the rock's surface, chips in the way.
 
-    width, height: m of the window; others as of a Specimen. Raises ParameterError naming the parameter.
+    width, height: m of the window in the strip; strip: of kernels.strip, straight by default; surface: (x (k,), y (k,))
+    m of the strip, the rock's surface, which no centre is above, at y = height by default; extent: (2,) m that pictures
+    show, the window by default; others as of a Specimen. Raises ParameterError naming the parameter.
     """
 
     def __init__(self, *, width, height, radius_min, radius_max, porosity, seed, bonding_gap, grading_factor=1.0,
-                 fine_depth=0.035, density):
+                 fine_depth=0.035, density, strip=StraightStrip(), surface=None, extent=None):
         stored, pairs = packed_box(
             width=width, height=height, radius_min=radius_min, radius_max=radius_max, porosity=porosity, seed=seed,
             bonding_gap=bonding_gap, grading_factor=grading_factor, fine_depth=fine_depth, along=True)
         self.period = np.array([width, 0.0])
-        super().__init__(positions=stored["positions"], radii=stored["radii"], width=width, height=height,
-                         density=density, pairs=pairs, scale=stored["scale"])
+        self.strip, self.surface, self.stretch = strip, surface, strip.stretch(stored["positions"])
+        super().__init__(positions=stored["positions"], radii=self.stretch * stored["radii"], width=width,
+                         height=height, density=density, pairs=pairs, scale=self.stretch * stored["scale"],
+                         porosity=1 - float(np.sum(np.pi * stored["radii"]**2)) / (width * height))
+        self.extent = self.extent if extent is None else extent
         i, j = pairs.T
         x = self.positions[:, 0]
         self.crossing = np.rint((x[i] - x[j]) / width).astype(int)
         self.slab = np.minimum((x / self.slab_length).astype(int), SLABS - 1)
-        self.laps, self.absent = np.zeros(self.count, int), np.zeros(self.count, bool)
+        self.laps = np.zeros(self.count, int)
+        self.absent = self._above_surface(np.arange(self.count))
         self.passed = 0
         """Slabs that have left the window."""
+
+    def top(self, x):
+        """Height (m) of the rock's surface at x (m) of the strip."""
+        return self.height if self.surface is None else np.interp(x, *self.surface)
+
+    def _above_surface(self, numbers):
+        points = self.positions[numbers] + self.laps[numbers, None] * self.period
+        return points[:, 1] > self.top(points[:, 0])
+
+    @property
+    def bond_lengths(self):
+        """(m,) m between the centres of each pair."""
+        i, j = self.pairs.T
+        return self.strip.lengths(self.positions[i], packing.separation(self.positions, i, j, self.period))
 
     @property
     def slab_length(self):
@@ -58,18 +81,18 @@ class RockMass(RockAssembly):
 
     @property
     def begin(self):
-        """x (m) of the window's left end."""
+        """x (m) of the window's left end in the strip."""
         return self.passed * self.slab_length
 
     @property
     def end(self):
-        """x (m) of the window's right end."""
+        """x (m) of the window's right end in the strip."""
         return self.begin + self.width
 
     @property
     def places(self):
         """(n, 2) m of the particles in untouched rock; absent ones stand aside."""
-        places = self.positions + self.laps[:, None] * self.period
+        places = self.strip.place(self.positions + self.laps[:, None] * self.period)
         aside = np.flatnonzero(self.absent)
         spacing = 2.5 * float(self.radii.max())
         row, column = np.divmod(aside, max(1, int(self.width / spacing)))
@@ -78,11 +101,11 @@ class RockMass(RockAssembly):
 
     @property
     def frame(self):
-        """(2,) m, the lower left corner of the window."""
-        return np.array([self.begin, 0.0])
+        """(2,) m, the lower left corner of pictures."""
+        return self.strip.frame(self.begin)
 
     def shown(self, positions):
-        """Places (n, 2) m in the window; nan for particles that are not there."""
+        """Places (n, 2) m in pictures of particles at `positions` (n, 2) m; nan for those that are not there."""
         return np.where(self.absent[:, None], np.nan, positions - self.frame)
 
     @property
@@ -94,14 +117,19 @@ class RockMass(RockAssembly):
     @property
     def anchored(self):
         """(n,) bool: particles at the bottom, which hold what is rock and no chip."""
-        return self.positions[:, 1] < 1.05 * self.radii
+        return self.positions[:, 1] < 1.05 * self._radii
+
+    @property
+    def _radii(self):
+        """(n,) m in the strip."""
+        return self.radii / self.stretch
 
     def at_ends(self):
         """(numbers of the particles at the left end, those at the right end) of the window now."""
         x = self.positions[:, 0] + self.laps * self.width
         here = ~self.absent
-        return (np.flatnonzero(here & (x - self.begin < 1.05 * self.radii)),
-                np.flatnonzero(here & (self.end - x < 1.05 * self.radii)))
+        return (np.flatnonzero(here & (x - self.begin < 1.05 * self._radii)),
+                np.flatnonzero(here & (self.end - x < 1.05 * self._radii)))
 
     def leave_out(self, gone):
         """Particles (n,) bool that are not there at first."""
@@ -111,7 +139,7 @@ class RockMass(RockAssembly):
         """Move the window by a slab. -> numbers (k,) of the particles that left it behind and enter it ahead."""
         moved = np.flatnonzero(self.slab == self.passed % SLABS)
         self.laps[moved] += 1
-        self.absent[moved] = False
+        self.absent[moved] = self._above_surface(moved)
         self.passed += 1
         return moved
 
@@ -134,8 +162,8 @@ class RockMass(RockAssembly):
         off = positions[joining] - places[joining]
         whole = np.linalg.norm(off, axis=1) < WHOLE * self.radii[joining]
         if np.count_nonzero(whole) > 0.5 * len(whole):
-            line = np.polynomial.polynomial.polyfit(places[joining[whole], 1], off[whole], 1)
-            displacement = np.polynomial.polynomial.polyval(places[moved, 1], line).T
+            line = np.polynomial.polynomial.polyfit(self.positions[joining[whole], 1], off[whole], 1)
+            displacement = np.polynomial.polynomial.polyval(self.positions[moved, 1], line).T
         now = positions.copy()
         now[moved] = places[moved] + displacement
         misfit = np.linalg.norm(now[i] - now[j], axis=1) - self.bond_lengths
@@ -148,10 +176,10 @@ class RockMass(RockAssembly):
         return displacement, made & ~self.absent[self.pairs].any(axis=1), in_the_way
 
     def moduli(self):
-        """kernels.elastic_moduli.Moduli of the bonded packing."""
-        rim = RIM * self.radii.max()
+        """kernels.elastic_moduli.Moduli of the bonded packing, the same in the strip and in the plane."""
+        rim = RIM * self._radii.max()
         kn, kt = self.stiffness()
-        return elastic_moduli(positions=self.positions, radii=self.radii, bonds=self.pairs, kn=kn, kt=kt,
+        return elastic_moduli(positions=self.positions, radii=self._radii, bonds=self.pairs, kn=kn, kt=kt,
                               box=((0.0, rim), (self.width, self.height - rim)), periodic=(True, False))
 
     def layouts(self):
@@ -161,12 +189,14 @@ class RockMass(RockAssembly):
         rolled = self.positions.copy()
         rolled[:, 0] = (rolled[:, 0] + 0.5 * self.width) % self.width
         within_one = abs(rolled[i, 0] - rolled[j, 0]) < 0.5 * self.width
-        return [(self.positions, self.crossing == 0), (rolled, within_one)]
+        return [(self.strip.place(self.positions), self.crossing == 0), (self.strip.place(rolled), within_one)]
 
     @cached_property
     def cells(self):
-        """kernels.voronoi.Cells: the part of the period that each particle stands for."""
-        return periodic_cells(self.positions, period=self.width, height=self.height)
+        """kernels.voronoi.Cells: the part of the period that each particle stands for, with its volume in the plane and
+        its faces in the strip, whose conductances are the same."""
+        found = periodic_cells(self.positions, period=self.width, height=self.height)
+        return replace(found, volumes=self.stretch**2 * found.volumes)
 
     def state(self):
         """What a restart needs."""

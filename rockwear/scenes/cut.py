@@ -154,6 +154,10 @@ class Cut(Scene):
         super()._connect()
         self.tool.bodies.connect()
 
+    def skip(self, steps):
+        super().skip(steps)
+        self.programme.skip(steps)
+
     def connect_again(self):
         """The scene in O has been loaded."""
         self._connect()

@@ -69,7 +69,7 @@ class CutOutput(Output):
     def model(self):
         scene = self.scene
         rock = scene.rock
-        size = {"box": np.array([rock.width, rock.height])} if scene.in_plane else {
+        size = {"box": np.array(rock.extent)} if scene.in_plane else {
             "block": np.array([rock.width, rock.height, rock.depth])}
         heat = {"thermal_positions": scene.tool.thermal_body.positions} if scene.heat else {}
         return {"rock_radii": rock.radii, "rock_fixed": rock.anchored, "bonds": rock.pairs,

@@ -9,9 +9,13 @@ from rockwear.kernels.checks import require
 from rockwear.kernels.parameter import Group, Parameter, above_zero, duration, flag, integer, number
 from rockwear.kernels.polygon import nearest_on_edges
 from rockwear.kernels.rigid_motion import SwingAndRotation
+from rockwear.kernels.strip import ArcStrip
 from rockwear.model.rock import CutOut, Specimen
+from rockwear.model.rock_mass import SLABS, RockMass
 from rockwear.scenes import parameters, parts
 from rockwear.scenes.cut import Cut
+from rockwear.scenes.physics import Boundary
+from rockwear.scenes.rock_window import RockWindow
 from rockwear.scenes.turns import Turns
 
 SCALED = "radius_min", "radius_max", "Rn", "Rt"
@@ -22,7 +26,11 @@ WITHOUT = {"width", "height", "grading_factor", "fine_depth", "velocity", "depth
 ROCK = (
     Parameter("full", False, "", flag, "the defaults of scale_factor and backing that give the source's 92,000 discs"),
     Parameter("backing", 0.06, "m", above_zero, "rock behind the path of the pick, fixed at its far side"),
-    Parameter("run_out", 0.06, "m", above_zero, "rock ahead of the pick at the end of the cut"),
+    Parameter("run_out", 0.06, "m", above_zero, "rock ahead of the pick at the end of the cut, without a window"),
+    Parameter("window_behind", 0.0, "m", number(0), "length behind the tip of a window of rock that moves along with "
+              "the pick"),
+    Parameter("window_ahead", 0.0, "m", number(0), "its length ahead of the tip; 0: no window, all rock is there from "
+              "the start"),
     Parameter("scale_factor", 4.0, "", number(1, 10), "factor on the radii of rock and, for the same macroscopic "
               "strength, on the strengths of its bonds; 1: the source's"))
 MOTION = (
@@ -73,6 +81,10 @@ def make(values):
     mass that feels the pick: from the path of the pick before it on the same track, which is the free surface, to
     `backing` behind its own path. Each turn is a cut of `cut_time` and cooling for the rest of 2 pi /
     angular_velocity. While nothing touches the tool the mechanics stand still, and only heat flows.
+
+    With window_ahead the rock is a rock mass along an arc: it goes on behind the entry, below the pick's path, and ahead
+    of the end of the cut, and only the part of it near the tip is there, with absorbing ends. Its particles grow with
+    the distance from the arc's centre.
     """
     scaled = {name: values["scale_factor"] * values[name] for name in SCALED if name in values}
     v = SimpleNamespace(**{**values, **scaled})
@@ -82,12 +94,14 @@ def make(values):
     check_cut(v, turn_time)
     vertices = parts.outline(v)
     track = Track(v, vertices)
-    rock = track.rock(v)
+    window = track.window(v) if v.window_ahead else None
+    rock = parts.bond(window.rock, v) if window else track.rock(v)
     programme = Turns(motion=track.motion(v.time_scale),
                       approach_time=v.approach / (v.cutter_radius * v.angular_velocity), cut_time=v.cut_time,
                       turn_time=turn_time, cycles=v.cycles, cooling_period=v.cooling_period, chip_area=track.chip_area,
-                      arrays={"free_surface": track.free_surface, "own_path": track.own_path})
-    return Cut(rock=rock, tool=parts.plane_tool(v, vertices), programme=programme, time_scale=v.time_scale,
+                      arrays={"free_surface": track.free_surface, "own_path": track.own_path}, window=window,
+                      tip=track.tip)
+    return Cut(boundary=Boundary("absorbing") if window else None, rock=rock, tool=parts.plane_tool(v, vertices), programme=programme, time_scale=v.time_scale,
                background_damping=v.background_damping, **parts.common(v))
 
 
@@ -102,13 +116,27 @@ def check_cut(v, turn_time):
             f"is thicker than a rock particle, {2 * v.radius_max:g}", "m")
     require(v.backing > 6 * v.radius_max, "backing", v.backing,
             f"more than three rock particles, {6 * v.radius_max:g}", "m")
+    if v.window_ahead:
+        check_window(v)
+
+
+def check_window(v):
+    """Raise ParameterError for a window in which there is no room for the cut."""
+    require(v.window_ahead >= 2 * v.feed, "window_ahead", v.window_ahead,
+            f"0, or at least twice feed = {v.feed:g}: chips are longer than they are thick", "m")
+    require(v.window_behind >= v.feed, "window_behind", v.window_behind, f"at least feed = {v.feed:g}", "m")
+    slab = (v.window_behind + v.window_ahead) / SLABS
+    require(slab >= 2 * v.radius_max, "window_ahead", v.window_ahead,
+            f"at least {SLABS * 2 * v.radius_max - v.window_behind:g}: a slab of the window takes a rock particle", "m")
+    require(not (v.heat and v.rock_expansion), "rock_expansion", v.rock_expansion,
+            "0: rock that enters the window is of the size it was packed with", "1/K")
 
 
 class Track:
     """The path of the pick through the rock, and of the pick before it. vertices: (k, 2) m, the pick's outline."""
 
     def __init__(self, v, vertices):
-        tip = vertices[np.argmin(vertices[:, 1])]
+        tip = self.tip = vertices[np.argmin(vertices[:, 1])]
         height = float(np.ptp(vertices[:, 1]))
         require(height > v.feed, "tooth_height", height, f"more than feed = {v.feed:g}", "m")
         edge = np.linspace(vertices, np.roll(vertices, -1, axis=0), 50).reshape(-1, 2)
@@ -131,12 +159,23 @@ class Track:
         # The free surface from the entry's radius to the last one.
         seen = [np.arctan2(before[:, 0] - x, -before[:, 1]) for x in (start, end)]
         free = before[(seen[0] >= angle[0]) & (seen[1] <= angle[-1])]
-        polygon = np.vstack([free, far[::-1]])
-        self.origin = -polygon.min(axis=0)
-        self.polygon = polygon + self.origin
-        self.free_surface, self.own_path = free + self.origin, own + self.origin
+        self.free, self.own, self.far, self.ends = free, own, far, (start, end)
         self.chip_area = v.feed * self.radius * (math.cos(angle[0]) - math.cos(angle[0] + self.spin * v.cut_time))
-        self.ends, self.own, self.far = (start, end), own, far
+
+    def _place(self, points):
+        """Put the origin where all points (n, 2) m have coordinates of at least 0. -> (2,) m, their extent."""
+        self.origin = -points.min(axis=0)
+        return tuple(np.ptp(points, axis=0).tolist())
+
+    @property
+    def free_surface(self):
+        """(k, 2) m, the path of the pick before."""
+        return self.free + self.origin
+
+    @property
+    def own_path(self):
+        """(k, 2) m of the tip."""
+        return self.own + self.origin
 
     def _arc(self, angle, radius):
         """Points (n, 2) m at `radius` from the centre, which is at the origin at first."""
@@ -150,10 +189,11 @@ class Track:
 
     def rock(self, v):
         """The rock along the track, fixed at its far side and where no chip can reach its ends."""
-        width, height = np.ptp(self.polygon - self.origin, axis=0)
-        whole = Specimen(width=float(width), height=float(height), radius_min=v.radius_min, radius_max=v.radius_max,
+        polygon = np.vstack([self.free, self.far[::-1]])
+        width, height = self._place(polygon)
+        whole = Specimen(width=width, height=height, radius_min=v.radius_min, radius_max=v.radius_max,
                          porosity=v.porosity, seed=v.seed, bonding_gap=v.bonding_gap, density=v.rock_density)
-        rock = CutOut(whole, polygon=self.polygon, bonding_gap=v.bonding_gap)
+        rock = CutOut(whole, polygon=polygon + self.origin, bonding_gap=v.bonding_gap)
         depth = [np.linalg.norm(rock.positions - self.origin - (x, 0.0), axis=1) - self.radius for x in self.ends]
         sides = [_distance(rock.positions, self.far + self.origin)] + [
             np.where(below > 0.5 * v.backing, _distance(rock.positions,
@@ -161,6 +201,31 @@ class Track:
             for k, below in zip((0, -1), depth)]
         rock.fixed = np.min(sides, axis=0) < 2 * v.radius_max
         return parts.bond(rock, v)
+
+    def window(self, v):
+        """The window of a rock mass along the arc nearest to the path of the tip.
+
+        At first it reaches from window_behind behind the tip to window_ahead ahead of it. Behind the entry the rock
+        ends at the tip's own path, from there on at the path of the pick before.
+        """
+        width = v.window_behind + v.window_ahead
+        entry = self.begin + self.ahead
+        last = entry + self.spin * v.cut_time + (v.window_ahead + width / SLABS) / self.radius
+        path = self._arc(np.linspace(self.begin, last, 200), self.radius)
+        strip = ArcStrip.through(path, level=v.backing, x=v.window_behind)
+        entry, end = strip.unroll(self._arc(np.array([entry, last]), self.radius))[:, 0]
+        wide = self._arc(np.linspace(self.begin - 0.2 - v.window_behind / self.radius, last + 0.2, 1000), self.radius)
+        own, free = strip.unroll(wide), strip.unroll(wide - (v.feed, 0.0))
+        own, free = own[own[:, 0] < entry] - (0.0, v.radius_max), free[free[:, 0] >= entry]
+        height = float(free[free[:, 0] < end, 1].max()) + v.radius_max
+        along = np.linspace(0.0, end, 200)
+        extent = self._place(np.vstack([strip.place(np.column_stack([along, np.full(200, y)])) for y in (0, height)]))
+        rock = RockMass(
+            width=width, height=height, radius_min=v.radius_min, radius_max=v.radius_max, porosity=v.porosity,
+            seed=v.seed, bonding_gap=v.bonding_gap, density=v.rock_density, extent=extent,
+            strip=ArcStrip.through(path + self.origin, level=v.backing, x=v.window_behind),
+            surface=np.vstack([own, free]).T)
+        return RockWindow(rock=rock, behind=v.window_behind, held_below=0.5 * v.backing)
 
 
 def _distance(points, line):

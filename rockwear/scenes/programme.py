@@ -22,6 +22,9 @@ class Programme(ABC):
     damping_rates = None
     """(stages,) 1/s of background damping by stage; None where it stays the same."""
 
+    window = None
+    """scenes.rock_window.RockWindow that moves along with the tool; None where all rock is there from the start."""
+
     warnings = staticmethod(list)
     """A function giving lines on what of a run is not to be relied on; none, if a programme has not its own."""
 
@@ -62,6 +65,10 @@ class Programme(ABC):
     def heat_time_scale(self):
         """Seconds of the process, in which heat flows, in a second of the mechanics."""
         return self.scene.time_scale
+
+    def skip(self, steps):
+        """So many steps of no length have been made, which no clock counts."""
+        self.path_start += steps
 
     def fastest(self):
         """Greatest speed of the tool, m/s of the mechanics."""
@@ -153,6 +160,9 @@ class StartState:
         scene.canonical()
         access.save(folder / self.FILE)
         self.kept = {"bonds": scene.bonds.state(), "bodies": scene.tool.bodies.state()}
+        if scene.programme.window:
+            self.kept["window"] = scene.programme.window.kept()
+            self.kept["path_start"] = scene.programme.path_start
         if scene.heat:
             self.kept["rock_temperature"] = scene.heat.network.temperature[:scene.rock.count].copy()
 
@@ -165,6 +175,9 @@ class StartState:
         bonds.restore(self.kept["bonds"])
         bonds.energy_released = released
         scene.tool.bodies.restore(self.kept["bodies"])
+        if scene.programme.window:
+            scene.programme.window.put_back(self.kept["window"])
+            scene.programme.path_start = int(self.kept["path_start"])
         scene.connect_again()
         scene.tool.insert_again()
         if scene.heat:

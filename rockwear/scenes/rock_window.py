@@ -11,6 +11,10 @@ FREE = "zXY"
 HELD = "xyzXYZ"
 MOST_LATE = 0.75
 """Part of a slab by which the window follows late while the tool is under load."""
+LOADED = 0.1
+"""Part of the largest mean force between two looks above which the tool is under load."""
+NEAR_BOTTOM, MOST_NEAR_BOTTOM = 0.1, 0.02
+"""Part of the window's height, and part of all cracks that may lie there without a warning."""
 
 
 class FixedBoundary:
@@ -29,8 +33,8 @@ class FixedBoundary:
 
 
 class RockWindow:
-    """Moves the window of rock by a slab whenever the tool has gone as far; its tip stays `behind` (m) from the left
-    end, and up to a slab more.
+    """Moves the window of rock by a slab whenever the tool has gone as far; its tip stays `behind` (m) from the end
+    behind it, and up to a slab more. Lengths are those of the rock's strip, straight or along an arc.
 
     The slab behind leaves with all that it has become: chips that it broke into go wherever they are, with their
     momentum and heat. It goes in ahead as untouched rock, at rest, bonded with the rock that is there as it lies, at
@@ -38,51 +42,66 @@ class RockWindow:
     bonds across a crack that has reached the end are not made (`missed`).
     This happens between two steps, and balances count it as no change.
 
-    rock: model.rock_mass.RockMass; record: scenes.cut_record.CutRecord of what leaves; sides: whether the ends are held
-    too, and not the bottom alone.
+    rock: model.rock_mass.RockMass; held_below: m, height up to which the end behind is held: what is above may be
+    chips; sides: whether the ends are held too, and not the bottom alone; book: a function that is told of a slab
+    before it leaves (scenes.cut_record.CutRecord.book).
     """
 
-    def __init__(self, *, rock, behind, record, sides=True):
-        self.rock, self.behind, self.record, self.sides = rock, behind, record, sides
+    def __init__(self, *, rock, behind, held_below, sides=True, book=None):
+        self.rock, self.behind, self.held_below, self.sides, self.book = rock, behind, held_below, sides, book
         self.held, self.cleared, self.missed = np.zeros(0, int), 0, 0
+        self.way, self.work, self.largest = 0.0, 0.0, 0.0
 
-    def begin(self, scene, boundary):
+    def attach(self, scene):
+        """The scene has been built or loaded."""
+        self.scene, self.boundary = scene, scene.boundary or FixedBoundary()
+
+    def begin(self, scene):
         """The scene has been built: hold the ends."""
-        self.scene, self.boundary = scene, boundary
+        self.attach(scene)
         self._hold_bottom(np.flatnonzero(self.rock.anchored & ~self.rock.absent))
         self._hold_sides()
         for n in np.flatnonzero(self.rock.absent).tolist():
             O.bodies[n].state.blockedDOFs = HELD
 
-    def follow(self, distance, under_load=False):
+    def distance(self, place):
+        """m that a tool whose tip is at `place` (2,) m has gone."""
+        return float(self.rock.strip.unroll(np.array([place]))[0, 0]) - self.behind
+
+    def follow(self, distance):
         """Bring the window along to where the tool has gone so far (m).
 
         Under load it waits, for part of a slab at most: rock that comes in, at rest, beside rock that is pressed
         together would be torn off when the load falls.
         """
-        late = MOST_LATE if under_load else 0.0
+        late = MOST_LATE if self._under_load(distance) else 0.0
         while distance >= self.rock.begin + (1.0 + late) * self.rock.slab_length:
             self.advance(distance)
 
-    def whole_record(self, distance, behind):
-        """(groove, chips) rows of all the rock further back than x = `behind` (m)."""
-        return self.record.whole(positions=rock_states(self.rock)[:, :2], distance=distance, behind=behind,
-                                 intact=self.scene.bonds.status == INTACT)
+    def _under_load(self, distance):
+        """Whether the tool has been under load since the last call, which was when it had gone `way`."""
+        step, work = distance - self.way, self.scene.tool.contact.work_done
+        force, self.work, self.way = (work - self.work) / step if step else 0.0, work, distance
+        self.largest = max(self.largest, force)
+        return force > LOADED * self.largest
 
     def advance(self, distance=0.0):
         """Move on by a slab; distance: m that the tool has gone."""
         scene, rock, bonds = self.scene, self.rock, self.scene.bonds
         scene.close_books()
         positions = rock_states(rock)[:, :2]
-        self.record.book(positions=positions, intact=bonds.status == INTACT, distance=distance)
+        if self.book:
+            self.book(positions=positions, intact=bonds.status == INTACT, distance=distance)
         if self.sides:
             self.boundary.release(self.held)
         moved = rock.advance()
         displacement, made, in_the_way = rock.fit(moved, positions)
         bottom = moved[rock.anchored[moved]]
         self.boundary.release(bottom)
-        self._put(moved, rock.places[moved] + displacement, FREE)
-        self._put(in_the_way, rock.places[in_the_way], HELD)
+        there = ~rock.absent[moved]
+        self._put(moved[there], (rock.places[moved] + displacement)[there], FREE)
+        for aside in (moved[~there], in_the_way):
+            self._put(aside, rock.places[aside], HELD)
         # YADE's loop would find contacts of supports anew, as of rock.
         O.interactions.eraseNonReal()
         left = np.isin(rock.pairs, [*moved, *in_the_way]).any(axis=1)
@@ -113,34 +132,65 @@ class RockWindow:
             return
         rock = self.rock
         left, right = (part[~rock.anchored[part]] for part in rock.at_ends())
-        y = rock_states(rock)[left, 1]
-        # What is above the groove may be chips.
-        left = left[y < rock.height - 2 * self.scene.depth_of_cut]
+        y = rock.strip.unroll(rock_states(rock)[left, :2])[:, 1]
+        left = left[y < self.held_below]
         # In a low window there may be none.
         if len(left):
             self._hold(left, (-1.0, 0.0), float(rock.positions[left, 1].max()), self.behind, left)
-        self._hold(right, (1.0, 0.0), rock.height, rock.width - self.behind, right)
+        self._hold(right, (1.0, 0.0), rock.top(rock.end), rock.width - self.behind, right)
         self.held = np.concatenate([left, right])
 
     def _hold(self, numbers, normal, length, distance, face):
         """Hold particles of a face (its particles: `face`) of this length (m), so far (m) from the load."""
-        radii = self.rock.radii
-        areas = length * radii[numbers] / radii[face].sum()
+        rock, radii = self.rock, self.rock.radii
+        areas = length * radii[numbers] / (radii / rock.stretch)[face].sum()
         count = len(numbers)
         # Springs are at rest in untouched rock, unless a crack has moved it.
-        moved = (rock_states(self.rock)[:, :2] - self.rock.places)[numbers]
+        places = rock.places
+        moved = (rock_states(rock)[:, :2] - places)[numbers]
         moved[np.linalg.norm(moved, axis=1) > WHOLE * radii[numbers]] = 0.0
-        self.boundary.hold(numbers, np.tile(normal, (count, 1)), areas, np.full(count, distance), moved)
+        normals = rock.strip.turned(np.tile(normal, (count, 1)), rock.strip.unroll(places[numbers]))
+        self.boundary.hold(numbers, normals, areas, np.full(count, distance), moved)
+
+    def results(self):
+        """{name: (value, unit)}."""
+        return {"window_passed": (self.rock.begin, "m"), "chip_particles_cleared": (self.cleared, "-"),
+                "bonds_missed_ahead": (self.missed, "-")}
+
+    def warnings(self, cracks):
+        """Lines on cracks (of engines.bond_log) that reached where the window ends."""
+        heights = self.rock.strip.unroll(np.array([(crack.x, crack.y) for crack in cracks]).reshape(-1, 2))[:, 1]
+        deep, found = int(np.sum(heights < NEAR_BOTTOM * self.rock.height)), []
+        if deep > MOST_NEAR_BOTTOM * len(cracks):
+            found.append(f"{deep} of {len(cracks)} cracks lie in the lowest {100 * NEAR_BOTTOM:g} % of the window, "
+                         "where its bottom rules what they do; a higher window tells how much")
+        if self.missed:
+            found.append(f"cracks reached the end of the window ahead, {self.missed} bonds were not made: a "
+                         "larger window_ahead tells how much it matters")
+        return found
 
     def state(self):
         """What a restart needs."""
-        return {"rock": self.rock.state(), "record": self.record.state(), "held": self.held.copy(),
-                "cleared": self.cleared, "missed": self.missed}
+        return {"rock": self.rock.state(), "held": self.held.copy(), "cleared": self.cleared, "missed": self.missed,
+                "way": self.way, "work": self.work, "largest": self.largest}
 
-    def restore(self, state, scene, boundary):
+    def restore(self, state, scene):
         """Take back what `state` gave."""
-        self.scene, self.boundary = scene, boundary
-        self.rock.restore(state["rock"])
-        self.record.restore(state["record"])
-        self.held = state["held"].astype(int)
+        self.attach(scene)
+        self._restore_place(state)
         self.cleared, self.missed = int(state["cleared"]), int(state["missed"])
+        self.work, self.largest = float(state["work"]), float(state["largest"])
+
+    def _restore_place(self, state):
+        self.rock.restore(state["rock"])
+        self.held, self.way = state["held"].astype(int), float(state["way"])
+
+    def kept(self):
+        """What `put_back` needs."""
+        return {**self.state(), "boundary": self.scene.boundary.state() if self.scene.boundary else {}}
+
+    def put_back(self, kept):
+        """The rock in YADE is again what it was when `kept` was taken; what is counted goes on."""
+        self._restore_place(kept)
+        if self.scene.boundary:
+            self.scene.boundary.put_back(kept["boundary"])

@@ -5,6 +5,8 @@ from types import SimpleNamespace
 import numpy as np
 from yade import O
 
+from rockwear.engines.access import rock_states
+from rockwear.engines.bond_log import INTACT
 from rockwear.kernels.checks import require
 from rockwear.kernels.fragments import chip_length
 from rockwear.kernels.groove import groove_results
@@ -19,16 +21,11 @@ from rockwear.scenes.cut_record import CHIPS, GROOVE, CutRecord, table
 from rockwear.scenes.output import crack_table
 from rockwear.scenes.physics import Boundary
 from rockwear.scenes.programme import Programme
-from rockwear.scenes.rock_window import FixedBoundary, RockWindow
+from rockwear.scenes.rock_window import RockWindow
 
 LEAST_SPEED = 0.05
 """Part of the cutting velocity with which the ramp of speed begins."""
-LOADED = 0.1
-"""Part of the largest mean force of a chunk of steps above which the tool is under load."""
 BOUNDARIES = "absorbing", "fixed", "free"
-
-NEAR_BOTTOM, MOST_NEAR_BOTTOM = 0.1, 0.02
-"""Part of the window's height, and part of all cracks that may lie there without a warning."""
 
 WINDOW = Group("rock", (
     Parameter("window_behind", 0.03, "m", above_zero, "length of the window behind the tip"),
@@ -69,11 +66,12 @@ def make(values):
                     grading_factor=v.grading_factor, fine_depth=v.fine_depth, density=v.rock_density)
     path = v.window_height - v.depth_of_cut
     rock.leave_out(above_groove(rock, outline + [v.window_behind, path], path, math.radians(v.begin_angle)))
+    record = CutRecord(rock=rock, start=(v.window_behind, path))
     programme = SteadyCut(
         velocity=v.velocity * v.time_scale, cut_length=v.cut_length, ramp_length=v.ramp_length,
-        start=(v.window_behind, path),
-        window=RockWindow(rock=rock, behind=v.window_behind, sides=v.boundary != "free",
-                          record=CutRecord(rock=rock, start=(v.window_behind, path))))
+        start=(v.window_behind, path), record=record,
+        window=RockWindow(rock=rock, behind=v.window_behind, held_below=v.window_height - 2 * v.depth_of_cut,
+                          sides=v.boundary != "free", book=record.book))
     return Cut(tool=tool, programme=programme, rock=parts.bond(rock, v), time_scale=v.time_scale,
                boundary=Boundary(v.boundary),
                background_damping=v.background_damping, **parts.common(v))
@@ -115,15 +113,15 @@ class SteadyCut(Programme):
     """A tool that comes up to its velocity in a groove that fits it and then cuts on at a constant depth.
 
     velocity: m/s of the mechanics; cut_length, ramp_length: m; start: (2,) m, where the tool's origin begins; window:
-    RockWindow.
+    RockWindow; record: CutRecord of what leaves it.
     """
 
-    def __init__(self, *, velocity, cut_length, ramp_length, start, window):
+    def __init__(self, *, velocity, cut_length, ramp_length, start, window, record):
         super().__init__(Straight(start=start, velocity=(velocity, 0.0)), {"stage_names": np.array(["cut"])})
         self.origin = start
-        self.velocity, self.cut_length, self.ramp_length, self.window = velocity, cut_length, ramp_length, window
+        self.velocity, self.cut_length, self.ramp_length = velocity, cut_length, ramp_length
+        self.window, self.record = window, record
         self.way, self.speed, self.since = 0.0, 0.0, 0
-        self.work, self.largest = 0.0, 0.0
 
     def stages(self):
         return {"cut": (self.cut_length + self.ramp_length) / self.velocity * self.scene.time_scale}
@@ -131,27 +129,16 @@ class SteadyCut(Programme):
     def begin(self):
         super().begin()
         self.since = O.iter
-        self.window.begin(self.scene, self._boundary())
-
-    def _boundary(self):
-        return self.scene.boundary or FixedBoundary()
+        self.window.begin(self.scene)
 
     @property
     def distance(self):
         """m that the tool has gone."""
         return self.way + self.speed * (O.iter - self.since) * self.scene.time_step
 
-    def _under_load(self):
-        """Whether the tool has been under load since the last call, which was when it had gone `way`."""
-        step, work = self.distance - self.way, self.scene.tool.contact.work_done
-        force, self.work = (work - self.work) / step if step else 0.0, work
-        self.largest = max(self.largest, force)
-        return force > LOADED * self.largest
-
     def run(self):
-        under_load = self._under_load()
         self.way, self.since = self.distance, O.iter
-        self.window.follow(self.way, under_load)
+        self.window.follow(self.way)
         self.since = O.iter
         ramp = 2 * self.ramp_length / self.velocity
         reached = (self.step + 0.5 * self.scene.chunk) * self.scene.time_step
@@ -167,11 +154,12 @@ class SteadyCut(Programme):
     def _record(self):
         """(groove (k, 2), chips (l, 6)) up to now, without what lies within a depth of cut of the tip."""
         behind = self.origin[0] + self.distance - self.scene.depth_of_cut
-        groove, chips = self.window.whole_record(self.distance, behind)
+        groove, chips = self.record.whole(positions=rock_states(self.scene.rock)[:, :2], distance=self.distance,
+                                          behind=behind, intact=self.scene.bonds.status == INTACT)
         return np.array(groove).reshape(-1, len(GROOVE)), np.array(chips).reshape(-1, len(CHIPS))
 
     def results(self, columns):
-        window, found = self.window, {}
+        found = {}
         if columns:
             found = steady_results(distance=columns["distance"], cutting=columns["cutting_force"],
                                    thrust=columns["thrust_force"], friction_work=columns["tool_friction"],
@@ -182,20 +170,10 @@ class SteadyCut(Programme):
             length = chip_length(particles=chips[1], area=chips[2], length=chips[3])
             found.update(with_error("chip_length", length, "m"))
             found["peak_cutting_force"] = float(columns["cutting_force"].max()), self.scene.units.force
-        return {**found, "window_passed": (window.rock.begin, "m"), "chip_particles_cleared": (window.cleared, "-"),
-                "bonds_missed_ahead": (window.missed, "-")}
+        return {**found, **self.window.results()}
 
     def warnings(self):
-        cracks, rock = self.scene.bonds.cracks, self.window.rock
-        deep = sum(crack.y < NEAR_BOTTOM * rock.height for crack in cracks)
-        found = []
-        if deep > MOST_NEAR_BOTTOM * len(cracks):
-            found.append(f"{deep} of {len(cracks)} cracks lie in the lowest {100 * NEAR_BOTTOM:g} % of the window, "
-                         "where its bottom rules what they do; a larger window_height tells how much")
-        if self.window.missed:
-            found.append(f"cracks reached the end of the window ahead, {self.window.missed} bonds were not made: a "
-                         "larger window_ahead tells how much it matters")
-        return found
+        return self.window.warnings(self.scene.bonds.cracks)
 
     def tables(self):
         groove, chips = self._record()
@@ -205,11 +183,11 @@ class SteadyCut(Programme):
                 **crack_table(cracks)}
 
     def state(self):
-        return {**super().state(), "window": self.window.state(), "way": self.way, "speed": self.speed,
-                "since": self.since, "work": self.work, "largest": self.largest}
+        return {**super().state(), "window": self.window.state(), "record": self.record.state(), "way": self.way,
+                "speed": self.speed, "since": self.since}
 
     def restore(self, state):
         super().restore(state)
         self.way, self.speed, self.since = float(state["way"]), float(state["speed"]), int(state["since"])
-        self.work, self.largest = float(state["work"]), float(state["largest"])
-        self.window.restore(state["window"], self.scene, self._boundary())
+        self.window.restore(state["window"], self.scene)
+        self.record.restore(state["record"])

@@ -20,11 +20,15 @@ class Turns(Programme):
 
     motion: of kernels.rigid_motion; approach_time, cut_time, turn_time: s of the process; cycles: turns;
     cooling_period: s between steps while the pick cools and the mechanics stand still; chip_area: m2 of rock that a
-    cut goes through; arrays: {name: array} for the report.
+    cut goes through; arrays: {name: array} for the report; window: RockWindow, or None with all rock there; tip: (2,)
+    m of the pick in its own frame, which a window follows. With a window each cut is into the rock of the window as the
+    approach left it.
     """
 
-    def __init__(self, *, motion, approach_time, cut_time, turn_time, cycles, cooling_period, chip_area, arrays):
+    def __init__(self, *, motion, approach_time, cut_time, turn_time, cycles, cooling_period, chip_area, arrays,
+                 window=None, tip=(0.0, 0.0)):
         super().__init__(motion, arrays)
+        self.window, self.tip = window, tip
         self.approach_time, self.cut_time, self.turn_time = approach_time, cut_time, turn_time
         self.cycles, self.cooling_period, self.chip_area = cycles, cooling_period, chip_area
         self.cooled, self.worn_heat = 0, 0.0
@@ -40,6 +44,11 @@ class Turns(Programme):
         self.scene.stages = [(name, max(1, round(times[name] / self.cooling_period)) if "cooling" in name else steps)
                              for name, steps in self.scene.stages]
         self.cooling_step = (self.turn_time - self.cut_time) / self.scene.stages[2][1]
+
+    def begin(self):
+        super().begin()
+        if self.window:
+            self.window.begin(self.scene)
 
     # ---- the clock
 
@@ -58,6 +67,8 @@ class Turns(Programme):
 
     def run(self):
         if not self.cooling:
+            if self.window:
+                self.window.follow(self.window.distance(self.motion.pose(self.path_time()).of([self.tip])[0]))
             return False
         scene = self.scene
         for _ in range(min(COOLING_CHUNK, scene.stages[scene.stage][1] - self.cooled)):
@@ -90,10 +101,13 @@ class Turns(Programme):
     # ---- what a checkpoint holds
 
     def state(self):
-        return {**super().state(), "cooled": self.cooled, "worn_heat": self.worn_heat}
+        window = {"window": self.window.state()} if self.window else {}
+        return {**super().state(), **window, "cooled": self.cooled, "worn_heat": self.worn_heat}
 
     def restore(self, state):
         super().restore(state)
+        if self.window:
+            self.window.restore(state["window"], self.scene)
         self.cooled, self.worn_heat = int(state["cooled"]), float(state["worn_heat"])
 
     # ---- what the folder of a run shows
@@ -132,7 +146,10 @@ class Turns(Programme):
                 found[f"mass_lost_after_cut_{n}"] = float(columns["mass_lost"][now].max()), "-"
                 for name in ("max", "hot") if scene.heat else ():
                     found[f"peak_temperature_{name}_{n}"] = float(columns[f"tool_temperature_{name}"][now].max()), "K"
-        return found
+        return {**found, **self.window.results()} if self.window else found
+
+    def warnings(self):
+        return self.window.warnings(self.cracks() + self.scene.bonds.cracks) if self.window else []
 
     def tables(self):
         """Where the pick's temperature would go in further turns."""
