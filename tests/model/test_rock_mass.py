@@ -3,10 +3,12 @@ import numpy as np
 import pytest
 
 from rockwear.kernels import packing
+from rockwear.kernels.bond_laws import ElasticBrittle
 from rockwear.kernels.checks import ParameterError
 from rockwear.kernels.conduction import HeatNetwork
 from rockwear.kernels.grains import grains
 from rockwear.kernels.polygon import reach
+from rockwear.kernels.strip import ArcStrip
 from rockwear.kernels.voronoi import periodic_cells
 from rockwear.model.rock_mass import SLABS, RockMass
 
@@ -21,6 +23,11 @@ def rock():
 
 def fresh():
     return RockMass(seed=3, **SIZE)
+
+
+def bent(seed=3, radius=0.1, **given):
+    """The same along an arc: its lower edge is 1.4 times as long as its upper one."""
+    return RockMass(seed=seed, strip=ArcStrip(centre=(0.05, 0.2), radius=radius, level=0.015), **{**SIZE, **given})
 
 
 def bonds_by_places(mass):
@@ -160,3 +167,61 @@ def test_bad_windows_are_refused(name, value):
     with pytest.raises(ParameterError) as refused:
         RockMass(seed=1, **{**SIZE, name: value})
     assert refused.value.name == name
+
+
+def found_in_the_plane(mass):
+    """Porosity of the window, neighbours of a particle, mean gap over a diameter of the bonds; of the packing as it
+    lies in the plane."""
+    inner, outer = (mass.strip.radius * mass.strip.stretch(np.array([[0.0, y]]))[0] for y in (mass.height, 0.0))
+    area = 0.5 * mass.width / mass.strip.radius * (outer**2 - inner**2)
+    (i, j), lengths = mass.pairs[mass.bonded].T, np.linalg.norm
+    gap = lengths(mass.places[i] - mass.places[j], axis=1) / (mass.radii[i] + mass.radii[j]) - 1
+    near = packing.contacts(mass.places, mass.radii, 0.0)
+    return 1 - np.pi * np.sum(mass.radii**2) / area, 2 * len(near) / mass.count, gap.mean()
+
+
+def test_a_packing_along_an_arc_is_the_straight_one_in_all_that_counts():
+    """Discs of R / 100 on an arc as strongly bent as here; a dredge's are of R / 600."""
+    pairs = [(RockMass(seed=seed, **SIZE), bent(seed)) for seed in (3, 4, 5)]
+    straight = np.array([(mass.porosity, 2 * len(packing.contacts(mass.places, mass.radii, 0.0)) / mass.count,
+                          (mass.bond_lengths / mass.radii[mass.pairs].sum(axis=1) - 1)[mass.bonded].mean())
+                         for mass, _ in pairs])
+    arc = np.array([found_in_the_plane(mass) for _, mass in pairs])
+    porosity, coordination, gap = (arc - straight).T
+    assert abs(porosity).max() < 2e-3 and abs(coordination).max() < 0.02 and abs(gap).max() < 5e-5
+    assert np.ptp(straight[:, 1]) > 0.02 and np.ptp(straight[:, 2]) > 1e-4
+
+
+def test_along_an_arc_bonds_and_modulus_are_the_same_wherever_the_window_is():
+    mass, rock = bent(), fresh()
+    assert (mass.pairs == rock.pairs).all() and mass.crack_area == pytest.approx(rock.crack_area, rel=5e-3)
+    law = ElasticBrittle(kn=1e10, kt=5e9, Rn=1e4, Rt=1e4, mu=0.5)
+    mass.bond(law), rock.bond(law)
+    assert mass.moduli() == pytest.approx(rock.moduli(), rel=1e-12)
+    assert mass.cells.volumes.sum() == pytest.approx(mass.volume, rel=0.01)
+    for k in range(1, 2 * SLABS):
+        mass.advance()
+        i, j = mass.pairs[mass.bonded].T
+        assert np.linalg.norm(mass.places[i] - mass.places[j], axis=1) == pytest.approx(
+            mass.bond_lengths[mass.bonded], rel=1e-12)
+        x = mass.strip.unroll(mass.places)[:, 0]
+        assert x.min() >= k * mass.slab_length - 1e-12 and x.max() <= mass.end + 1e-12
+
+
+def test_what_is_above_the_surface_is_absent_as_it_begins_and_as_it_enters():
+    surface = np.array([0.0, 0.03, 0.1]), np.array([0.01, 0.01, 0.03])
+    mass = bent(surface=surface)
+    for _ in range(SLABS + 3):
+        points = mass.positions + mass.laps[:, None] * mass.period
+        assert (mass.absent == (points[:, 1] > np.interp(points[:, 0], *surface))).all() and mass.absent.any()
+        mass.advance()
+    assert mass.top(0.065) == pytest.approx(0.02) and fresh().top(0.065) == SIZE["height"]
+
+
+def test_rock_enters_an_arc_displaced_by_what_is_there_at_its_depth():
+    mass = bent()
+    moved = mass.advance()
+    shift = np.column_stack([2e-6 * (1 + 20 * mass.positions[:, 1]), np.full(mass.count, -1e-6)])
+    displacement, made, in_the_way = mass.fit(moved, mass.places + shift)
+    assert displacement == pytest.approx(shift[moved]) and not len(in_the_way)
+    assert made.sum() == (mass.bonded & np.isin(mass.pairs, moved).any(axis=1)).sum()
