@@ -31,8 +31,7 @@ class Expansion(Engine):
         self.coefficient, self.reference, self.temperature = coefficient, reference, temperature
         self.bonds, self.loose = bonds, loose
         self.cold, (i, j) = rock.radii, rock.pairs.T
-        distance = np.linalg.norm(rock.positions[j] - rock.positions[i], axis=1)
-        self.overlap = 1 - distance / (self.cold[i] + self.cold[j])
+        self.overlap = 1 - rock.bond_lengths / (self.cold[i] + self.cold[j])
         self.work = 0.0
 
     def connect(self):
@@ -55,6 +54,12 @@ class Expansion(Engine):
             grown = sum(growth[body] for body in (i.id1, i.id2) if body < len(growth))
             if grown and i.isReal:
                 self.work += grown * (i.phys.normalForce.dot(i.geom.normal) + 0.5 * i.phys.kn * grown)
+
+    def renew(self, numbers):
+        """Particles `numbers` (k,) are about to be untouched rock, at the reference temperature."""
+        self.radii[numbers] = self.cold[numbers]
+        for n in numbers.tolist():
+            self.shapes[n].radius = float(self.cold[n])
 
     def state(self):
         return {"work": self.work}

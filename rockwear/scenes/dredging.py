@@ -128,8 +128,6 @@ def check_window(v):
     slab = (v.window_behind + v.window_ahead) / SLABS
     require(slab >= 2 * v.radius_max, "window_ahead", v.window_ahead,
             f"at least {SLABS * 2 * v.radius_max - v.window_behind:g}: a slab of the window takes a rock particle", "m")
-    require(not (v.heat and v.rock_expansion), "rock_expansion", v.rock_expansion,
-            "0: rock that enters the window is of the size it was packed with", "1/K")
 
 
 class Track:

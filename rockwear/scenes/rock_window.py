@@ -96,6 +96,8 @@ class RockWindow:
             self.boundary.release(self.held)
         moved = rock.advance()
         displacement, made, in_the_way = rock.fit(moved, positions)
+        if scene.expansion:
+            scene.expansion.renew(moved)
         bottom = moved[rock.anchored[moved]]
         self.boundary.release(bottom)
         there = ~rock.absent[moved]

@@ -101,7 +101,7 @@ def test_killed_in_the_water_and_resumed_equals_never_stopped(turns, tmp_path):
         time.sleep(0.01)
     process.send_signal(signal.SIGKILL)
     assert finish(process, out).code == -signal.SIGKILL and checkpoint_stage(out) == 2
-    resumed = dredge(out, "--resume", checkpoint_interval=0.2)
+    resumed = dredge(out, "--resume", checkpoint_interval=0.2, report="false")
     assert_as_if_never_stopped(resumed, turns, "turns.csv")
 
 
@@ -118,7 +118,10 @@ def checkpoint_stage(out):
 REFUSED = [
     (dict(cut_time=4), "cut_time = 4"), (dict(feed=0.01), "feed = 0.01"), (dict(backing=0.01), "backing = 0.01"),
     (dict(entry_angle=140, cut_time=0.6), "cut_time = 0.6"),
-    (dict(tooth_height=0.05, clearance=1), "tooth_height = 0.0499988")]
+    (dict(tooth_height=0.05, clearance=1), "tooth_height = 0.0499988"),
+    (dict(window_ahead=0.1, window_behind=0.1), "window_ahead = 0.1"),
+    (dict(window_ahead=0.2, window_behind=0.05), "window_behind = 0.05"),
+    (dict(window_ahead=0.12, window_behind=0.07), "window_ahead = 0.12")]
 
 
 def test_bad_input_is_refused_in_one_line(tmp_path):

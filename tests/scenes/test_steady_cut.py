@@ -61,7 +61,7 @@ def test_segments_go_as_far_and_the_process_takes_as_long_as_it_is_slower(tmp_pa
     assert abs(run.summary["balances"]["energy"]["residual"]) < 0.02 * run.summary["balances"]["energy"]["tool_work"]
 
 
-@pytest.mark.parametrize("law", ["brittle", "cohesive"])
+@pytest.mark.parametrize("law", ["brittle", "cohesive", "arc"])
 def test_rock_at_rest_stays_at_rest_while_the_window_moves_on(law, tmp_path):
     """Two periods of the window over rock that nothing touches: no stress, no crack, as many bonds as at first."""
     found = checks_of("window_at_rest", tmp_path, law)

@@ -1,6 +1,6 @@
 """The window of a rock mass moves on over rock that the tool does not touch.
 
-    yade -n -x window_at_rest.py LAW CHECKS.json
+    yade -n -x window_at_rest.py LAW CHECKS.json      LAW: of bonds along a straight way; arc: the dredge's
 """
 import json
 import os
@@ -10,15 +10,20 @@ from yade import O, utils
 
 from rockwear.model.rock_mass import SLABS
 from rockwear.run import parameters
-from rockwear.scenes import steady_cut
+from rockwear.scenes import dredging, steady_cut
+from rockwear.scenes.parameters import with_defaults
 
 law, file = sys.argv[1:]
-groups = steady_cut.groups(
-    window_behind=0.014, window_ahead=0.026, window_height=0.02, radius_min=0.8e-3, radius_max=1.2e-3, heat=False,
-    tool_radius_min=4e-4, tool_radius_max=5e-4, tooth_height=0.015, tooth_width=0.01, depth_of_cut=5e-3, bond_law=law,
-    background_damping=0.0)
-values = parameters.read(groups, [])
-scene = steady_cut.make(values)
+TOOL = dict(heat=False, background_damping=0.0, tool_radius_min=2e-3, tool_radius_max=2e-3)
+if law == "arc":
+    groups = with_defaults(dredging.groups(), window_behind=0.06, window_ahead=0.14, cut_time=0.2, **TOOL)
+    scene = dredging.make(parameters.read(groups, []))
+else:
+    groups = steady_cut.groups(
+        window_behind=0.014, window_ahead=0.026, window_height=0.02, radius_min=0.8e-3, radius_max=1.2e-3, heat=False,
+        tool_radius_min=4e-4, tool_radius_max=5e-4, tooth_height=0.015, tooth_width=0.01, depth_of_cut=5e-3,
+        bond_law=law, background_damping=0.0)
+    scene = steady_cut.make(parameters.read(groups, []))
 scene.programme.run = lambda: False
 scene.build()
 window, bonds, whole = scene.programme.window, [], []
