@@ -156,7 +156,7 @@ class Cut(Scene):
 
     def skip(self, steps):
         super().skip(steps)
-        self.programme.skip(steps)
+        self.programme.path_start += steps
 
     def connect_again(self):
         """The scene in O has been loaded."""

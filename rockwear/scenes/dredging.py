@@ -82,9 +82,10 @@ def make(values):
     `backing` behind its own path. Each turn is a cut of `cut_time` and cooling for the rest of 2 pi /
     angular_velocity. While nothing touches the tool the mechanics stand still, and only heat flows.
 
-    With window_ahead the rock is a rock mass along an arc: it goes on behind the entry, below the pick's path, and ahead
-    of the end of the cut, and only the part of it near the tip is there, with absorbing ends. Its particles grow with
-    the distance from the arc's centre.
+    With window_ahead the rock is a rock mass along an arc: it goes on behind the entry, below the pick's path, and
+    ahead of the end of the cut. Only the part of it near the tip is there, held by an absorbing boundary at its ends
+    and at its far side. Its particles grow with the distance from the arc's centre. Each turn begins anew with the
+    window that the approach left: what slabs took along in the turn before, chips and cracks, is gone.
     """
     scaled = {name: values["scale_factor"] * values[name] for name in SCALED if name in values}
     v = SimpleNamespace(**{**values, **scaled})
@@ -101,7 +102,8 @@ def make(values):
                       turn_time=turn_time, cycles=v.cycles, cooling_period=v.cooling_period, chip_area=track.chip_area,
                       arrays={"free_surface": track.free_surface, "own_path": track.own_path}, window=window,
                       tip=track.tip)
-    return Cut(boundary=Boundary("absorbing") if window else None, rock=rock, tool=parts.plane_tool(v, vertices), programme=programme, time_scale=v.time_scale,
+    return Cut(rock=rock, tool=parts.plane_tool(v, vertices), programme=programme, time_scale=v.time_scale,
+               boundary=Boundary("absorbing") if window else None,
                background_damping=v.background_damping, **parts.common(v))
 
 

@@ -66,10 +66,6 @@ class Programme(ABC):
         """Seconds of the process, in which heat flows, in a second of the mechanics."""
         return self.scene.time_scale
 
-    def skip(self, steps):
-        """So many steps of no length have been made, which no clock counts."""
-        self.path_start += steps
-
     def fastest(self):
         """Greatest speed of the tool, m/s of the mechanics."""
         return float(np.linalg.norm(self.motion.velocity(0.0)))

@@ -33,8 +33,8 @@ def twice(*, width, bonding_gap, **common):
 
 def course(ahead, cut_time):
     """[[distance, work, friction] after every few steps] with so long a window (m) ahead of the tip."""
-    groups = with_defaults(dredging.groups(), heat=False, background_damping=0.0, wear_acceleration=0.0, cut_time=cut_time,
-                           tool_radius_min=2e-3, tool_radius_max=2e-3, tooth_height=0.07,
+    groups = with_defaults(dredging.groups(), heat=False, background_damping=0.0, wear_acceleration=0.0,
+                           cut_time=cut_time, tool_radius_min=2e-3, tool_radius_max=2e-3, tooth_height=0.07,
                            tooth_width=0.05, time_scale=20.0, window_behind=BEHIND, window_ahead=ahead)
     scene = dredging.make(parameters.read(groups, []))
     assert TIME_STEP < scene.time_step, scene.time_step
