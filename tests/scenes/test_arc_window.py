@@ -62,10 +62,24 @@ def moved_in_second_turn(out):
         return False
 
 
-def test_a_longer_window_is_not_felt_until_waves_come_back_from_its_end(tmp_path):
+@pytest.fixture(scope="module")
+def short_and_long(tmp_path_factory):
+    return {name: np.array(rows).T for name, rows in checks_of(
+        "arc_window", tmp_path_factory.mktemp("arc")).items()}
+
+
+def test_bottom_and_ends_are_held_along_the_arc(short_and_long):
+    """Normals point away from the centre or along the arc."""
+    outwards = abs(short_and_long["outwards"])
+    bottom = outwards > 0.5
+    assert bottom.sum() > 10 and outwards[bottom] == pytest.approx(1.0, abs=1e-12)
+    assert (~bottom).sum() > 5 and abs(outwards[~bottom]).max() < 1e-12
+
+
+def test_a_longer_window_is_not_felt_until_waves_come_back_from_its_end(short_and_long):
     """The same rock, a window of three times the length ahead: equal to the last digits while waves are on their way to
     its end and back, and close while the first bonds break."""
-    found = {name: np.array(rows).T for name, rows in checks_of("arc_window", tmp_path).items()}
+    found = short_and_long
     (distance, work, friction), (same, work_long, friction_long) = found["short"], found["long"]
     assert distance == pytest.approx(same, abs=1e-12)
     assert work[:4] == pytest.approx(work_long[:4], rel=1e-9) and work[0] > 1

@@ -2,7 +2,8 @@
 
     yade -n -x arc_window.py CHECKS.json
 
-Writes {"short" or "long": [[m that the tip has gone, J/m of its work, of that by friction]]} from the first touch on.
+Writes {"short" or "long": [[m that the tip has gone, J/m of its work, of that by friction]]} from the first touch on,
+and of the short one "outwards": [part of the normal of each support that points away from the arc's centre].
 """
 import json
 import os
@@ -32,7 +33,7 @@ def twice(*, width, bonding_gap, **common):
 
 
 def course(ahead, cut_time):
-    """[[distance, work, friction] after every few steps] with so long a window (m) ahead of the tip."""
+    """[[distance, work, friction] after every few steps] with so long a window (m) ahead of the tip, and `outwards`."""
     groups = with_defaults(dredging.groups(), heat=False, background_damping=0.0, wear_acceleration=0.0,
                            cut_time=cut_time, tool_radius_min=2e-3, tool_radius_max=2e-3, tooth_height=0.07,
                            tooth_width=0.05, time_scale=20.0, window_behind=BEHIND, window_ahead=ahead)
@@ -40,6 +41,8 @@ def course(ahead, cut_time):
     assert TIME_STEP < scene.time_step, scene.time_step
     scene.time_step = TIME_STEP
     scene.build()
+    away = scene.boundary.places - scene.rock.strip.centre
+    outwards = np.sum(scene.boundary.normals * away, axis=1) / np.linalg.norm(away, axis=1)
     found, programme = [], scene.programme
     while len(found) < LOOKS:
         base.run(STEPS)
@@ -50,15 +53,16 @@ def course(ahead, cut_time):
         if scene.step % scene.chunk == 0:
             scene.canonical()
             programme.run()
-    return found
+    return found, outwards.tolist()
 
 
 packed_box = rock_mass.packed_box
-found = {"short": course(AHEAD, 0.4)}
+found = {}
+found["short"], found["outwards"] = course(AHEAD, 0.4)
 with mock.patch.object(rock_mass, "packed_box", twice):
     # A shorter cut has a longer window end at the same place: the arc is the same.
     width = BEHIND + AHEAD
-    found["long"] = course(AHEAD + width, 0.4 - width * (1 + 1 / rock_mass.SLABS) / (0.7 * 1.6204))
+    found["long"], _ = course(AHEAD + width, 0.4 - width * (1 + 1 / rock_mass.SLABS) / (0.7 * 1.6204))
 with open(sys.argv[1], "w", encoding="utf-8") as out:
     json.dump(found, out)
 os._exit(0)
