@@ -6,6 +6,7 @@ import json
 import os
 import sys
 
+import numpy as np
 from yade import O, utils
 
 from rockwear.model.rock_mass import SLABS
@@ -14,9 +15,10 @@ from rockwear.scenes import dredging, steady_cut
 from rockwear.scenes.parameters import with_defaults
 
 law, file = sys.argv[1:]
-TOOL = dict(heat=False, background_damping=0.0, tool_radius_min=2e-3, tool_radius_max=2e-3)
 if law == "arc":
-    groups = with_defaults(dredging.groups(), window_behind=0.06, window_ahead=0.14, cut_time=0.2, **TOOL)
+    groups = with_defaults(
+        dredging.groups(), window_behind=0.06, window_ahead=0.14, cut_time=0.2, background_damping=0.0,
+        tool_radius_min=2e-3, tool_radius_max=2e-3, tooth_height=0.07, tooth_width=0.05, convection=0.0)
     scene = dredging.make(parameters.read(groups, []))
 else:
     groups = steady_cut.groups(
@@ -32,6 +34,11 @@ for k in range(2 * SLABS):
     if k == SLABS:
         for body in scene.tool.bodies.ids:
             O.bodies[body].state.pos += (0.0, 0.1, 0.0)
+    if scene.expansion:
+        # In the first round rock leaves warm, and with it the stress of its expansion.
+        leaving = np.isin(np.arange(len(scene.heat.network.capacity)), np.flatnonzero(scene.rock.slab == k))
+        scene.heat.network.add_heat(np.where(leaving, 10 * scene.heat.network.capacity, 0.0))
+        scene.expansion.act()
     window.advance()
     if k >= SLABS:
         for _ in range(20):
