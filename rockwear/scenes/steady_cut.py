@@ -89,8 +89,6 @@ def check_window(v):
     slab = (v.window_behind + v.window_ahead) / SLABS
     require(slab >= 2 * v.radius_max, "radius_max", v.radius_max,
             f"at most {slab / 2:g}: half of a slab of the window", "m")
-    require(not v.rock_expansion, "rock_expansion", v.rock_expansion,
-            "0: rock that enters the window is of the size it was packed with", "1/K")
     require(v.cut_length > v.ramp_length, "cut_length", v.cut_length, f"more than ramp_length = {v.ramp_length:g}", "m")
 
 

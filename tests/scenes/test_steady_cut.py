@@ -73,8 +73,7 @@ def test_rock_at_rest_stays_at_rest_while_the_window_moves_on(law, tmp_path):
 @pytest.mark.parametrize("values, words", [
     (dict(depth_of_cut=0.0131), "depth_of_cut = 0.0131 m"), (dict(window_ahead=0.01), "window_ahead = 0.01 m"),
     (dict(window_behind=0.005), "window_behind = 0.005 m"), (dict(ramp_length=0.02), "cut_length = 0.02 m"),
-    (dict(radius_max=2.1e-3), "radius_max = 0.0021 m"), (dict(tooth_height=0.004), "tooth_height = 0.004 m"),
-    (dict(heat="true", rock_expansion=1e-5), "rock_expansion = 1e-05 1/K")])
+    (dict(radius_max=2.1e-3), "radius_max = 0.0021 m"), (dict(tooth_height=0.004), "tooth_height = 0.004 m")])
 def test_a_cut_that_has_no_room_is_refused(values, words, tmp_path):
     (code, said), = refusals(SCRIPT, tmp_path, [[*arguments({**SMALL, **values}), "--out", tmp_path / "out"]])
     assert_refused(code, said, words)
