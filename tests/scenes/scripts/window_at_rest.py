@@ -49,7 +49,8 @@ for k in range(2 * SLABS):
 stored = scene.stored_energy()
 among_rock = sum(i.isReal and max(i.id1, i.id2) < scene.rock.count for i in O.interactions)
 late = scene.programme.path_time() * scene.time_scale - scene.time
-found = {"late": late, "kinetic": utils.kineticEnergy(), "elastic": stored["elastic"], "cracks": len(scene.bonds.cracks),
+found = {"late": late, "kinetic": utils.kineticEnergy(), "elastic": stored["elastic"],
+         "cracks": len(scene.bonds.cracks),
          "bonds": bonds, "whole": whole, "interactions": among_rock}
 with open(file, "w", encoding="utf-8") as out:
     json.dump(found, out)
