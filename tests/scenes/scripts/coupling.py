@@ -48,7 +48,8 @@ def arranged(positions, radii=D / 2, pairs=None, fixed=()):
     pairs = contacts(positions, radii, 1e-9) if pairs is None else np.reshape(pairs, (-1, 2)).astype(int)
     return SimpleNamespace(positions=positions, places=positions, radii=radii, count=count, fixed=is_fixed,
                            bonded=np.ones(len(pairs), bool), side=np.zeros(count, int),
-                           masses=masses, inertias=0.5 * masses * radii**2, pairs=pairs)
+                           masses=masses, inertias=0.5 * masses * radii**2, pairs=pairs,
+                           bond_lengths=np.linalg.norm(np.diff(positions[pairs], axis=1)[:, 0], axis=1))
 
 
 def body_of_discs(positions, radius):
