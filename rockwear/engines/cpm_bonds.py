@@ -7,7 +7,7 @@ import numpy as np
 from yade import CpmPhys, O, ScGeom
 
 from rockwear.engines.bond_log import BROKEN, INTACT, SEPARATED, BondLog, Crack
-from rockwear.engines.memory import TRIED, Places, check, offset
+from rockwear.engines.memory import MEMORY, TRIED, Places, check, offset
 from rockwear.kernels.bond_laws.cohesive import softening_energy
 
 LOOK_PERIOD = 10
@@ -44,7 +44,7 @@ _GROUPS = {"slip": ("slipped", "shear_force"), "damage": ("slipped", "shear_forc
            "forces": ("normal", "normal_force", "shear_force")}
 """What is read together."""
 SLIPPED, SHEAR, OMEGA = slice(0, 3), slice(3, 6), 6
-"""Columns of the groups "slip" and "damage"."""
+"""Rows of the groups "slip" and "damage"."""
 
 
 @cache
@@ -62,27 +62,27 @@ def _behind_slip():
 
 
 def _dot(a, b):
-    return np.einsum("ij,ij->i", a, b)
+    return np.einsum("ij,ij->j", a, b)
 
 
 def _differ(a, b):
-    """(k,) bool: whether vectors (k, 3) differ."""
-    return (a[:, 0] != b[:, 0]) | (a[:, 1] != b[:, 1]) | (a[:, 2] != b[:, 2])
+    """(k,) bool: whether vectors (3, k) differ."""
+    return (a[0] != b[0]) | (a[1] != b[1]) | (a[2] != b[2])
 
 
 def _vanish(a):
-    """(k,) bool: whether vectors (k, 3) are 0."""
-    return (a[:, 0] == 0.0) & (a[:, 1] == 0.0) & (a[:, 2] == 0.0)
+    """(k,) bool: whether vectors (3, k) are 0."""
+    return (a[0] == 0.0) & (a[1] == 0.0) & (a[2] == 0.0)
 
 
 def _take_slip(places, numbers, normal, force, stiffness):
     """Take the slip out of YADE's shear strains of bonds and leave the elastic part, in the plane of the contact.
-    normal, force (N): (k, 3), of the contact and the shear force; stiffness: N, force over strain. -> (k,) the slip, a
+    normal, force (N): (3, k), of the contact and the shear force; stiffness: N, force over strain. -> (k,) the slip, a
     strain."""
-    elastic = force - normal * _dot(force, normal)[:, None]
+    elastic = force - normal * _dot(force, normal)
     length = np.sqrt(_dot(elastic, elastic))
     # As long as the force, nearly in the plane of which it lies.
-    elastic *= (np.sqrt(_dot(force, force)) / np.where(length > 0.0, -length * stiffness, 1.0))[:, None]
+    elastic *= np.sqrt(_dot(force, force)) / np.where(length > 0.0, -length * stiffness, 1.0)
     slip = places.read("strain", numbers) - elastic
     places.write("strain", numbers, elastic)
     places.write("slipped", numbers, 0.0)
@@ -133,8 +133,8 @@ class CpmBonds(BondLog):
         omega, cohesion = _behind_slip()
         self.places = Places(count, vectors=_VECTORS, groups=_GROUPS,
                              numbers={"omega": ("slipped", omega), "cohesion": ("slipped", cohesion)})
-        self.rising = np.zeros(0, int)
-        """Bonds whose damage rose between the last two looks, by opening: their cohesion is set in every step."""
+        self.rising = self._weakened(np.zeros(0, int))
+        """Of the bonds whose damage rose between the last two looks, by opening: every step sets their cohesion."""
 
     @staticmethod
     def reference_overlap(phys):
@@ -173,6 +173,7 @@ class CpmBonds(BondLog):
         self.active[numbers] = False
         self._follow(numbers)
         # Not of bonds that have left: their memory is no longer theirs.
+        self.rising = self._weakened(np.zeros(0, int))
         self._prepare()
 
     def _follow(self, numbers):
@@ -193,19 +194,22 @@ class CpmBonds(BondLog):
             self._sample(there, self.places.read("damage", there))
         if (O.iter + 1) % self.between_samples == 0:
             self._prepare()
-        self._weaken(self.rising)
+        self._weaken(*self.rising)
 
-    def _weaken(self, numbers):
-        """Set the cohesion in YADE, of which it takes the part 1 - omega."""
-        if len(numbers):
-            left = 1.0 - self.coupling[numbers, None] * self.places.read("omega", numbers)
-            self.places.write("cohesion", numbers, self.Rt[numbers, None] / left)
+    def _weaken(self, omega, cohesion, coupling, Rt):
+        """Set the cohesion in YADE, of which it takes the part 1 - omega. (k,) omega, cohesion: their places."""
+        if len(omega):
+            MEMORY[cohesion] = Rt / (1.0 - coupling * MEMORY.take(omega, mode="wrap"))
+
+    def _weakened(self, numbers):
+        """What `_weaken` takes of these bonds (k,)."""
+        return (*(self.places.of(name, numbers)[0] for name in ("omega", "cohesion")), self.coupling[numbers],
+                self.Rt[numbers])
 
     def _prepare(self):
         """Keep slip and force (N) of the bonds as they are before a step whose work is sampled."""
         numbers = np.flatnonzero(self.active & (self.status != SEPARATED))
         self.before = numbers, self.places.read("slip", numbers)
-        self.rising = self.rising[self.status[self.rising] != SEPARATED]
 
     def _sample(self, there, now):
         """The work of slip of the last step. there: (k,) bonds; now: what _GROUPS["damage"] says of them."""
@@ -215,14 +219,14 @@ class CpmBonds(BondLog):
         at = at[numbers] - 1
         # The memory of bonds that have separated meanwhile is no longer theirs.
         if (at < 0).any():
-            numbers, before, at = numbers[at >= 0], before[at >= 0], at[at >= 0]
-        now = now[at]
+            numbers, before, at = numbers[at >= 0], before[:, at >= 0], at[at >= 0]
+        now = now[:SHEAR.stop].take(at, axis=1)
         # YADE leaves the slip of a bond without any shear strength as it is.
-        let_go = _vanish(now[:, SHEAR]) & ~_vanish(before[:, SHEAR])
-        slid = np.flatnonzero(_differ(now[:, SLIPPED], before[:, SLIPPED]) | let_go)
+        let_go = _vanish(now[SHEAR]) & ~_vanish(before[SHEAR])
+        slid = np.flatnonzero(_differ(now[SLIPPED], before[SLIPPED]) | let_go)
         if not len(slid):
             return
-        numbers, force, force_before = numbers[slid], now[slid, SHEAR], before[slid, SHEAR]
+        numbers, force, force_before = numbers[slid], now[SHEAR, slid], before[SHEAR, slid]
         work = -_dot(force + force_before, self.places.read("increment", numbers))
         stored = (_dot(force, force) - _dot(force_before, force_before)) / self.kt[numbers]
         self._dissipate(numbers, 0.5 * self.between_samples * (work - stored), True)
@@ -236,22 +240,22 @@ class CpmBonds(BondLog):
         now = self.places.read("damage", there)
         if sampled:
             self._sample(there, now)
-        omega, let_go = now[:, OMEGA], self.active[there] & _vanish(now[:, SHEAR])
-        changed = np.flatnonzero((omega != self.omega[there]) | ~_vanish(now[:, SLIPPED]) | let_go)
+        omega, let_go = now[OMEGA], self.active[there] & _vanish(now[SHEAR])
+        changed = np.flatnonzero((omega != self.omega[there]) | ~_vanish(now[SLIPPED]) | let_go)
         numbers, omega = there[changed], omega[changed]
-        self.rising = numbers[:0]
+        self.rising = self._weakened(numbers[:0])
         if not len(numbers):
             return
         self._begin(numbers[~self.active[numbers]])
         self._soften(numbers, omega)
         numbers = numbers[omega < 1.0]
         forces = self.places.read("forces", numbers)
-        slip = _take_slip(self.places, numbers, forces[:, :3], forces[:, 6:],
+        slip = _take_slip(self.places, numbers, forces[:3], forces[6:],
                           self.kt[numbers] * self.lengths[numbers]) * self.lengths[numbers]
         damaged = (slip > 0.0) & (self.omega[numbers] < SPENT) & (self.slip_end[numbers] < math.inf)
         if damaged.any():
-            self._damage(numbers[damaged], slip[damaged], forces[damaged])
-        self._weaken(numbers[self.coupling[numbers] > 0.0])
+            self._damage(numbers[damaged], slip[damaged], forces[:, damaged])
+        self._weaken(*self._weakened(numbers[self.coupling[numbers] > 0.0]))
 
     def _begin(self, numbers):
         """These bonds are found to have slipped or softened."""
@@ -267,7 +271,7 @@ class CpmBonds(BondLog):
         of = dict(Rn=self.Rn[rising], onset=self.onset[rising], gone=self.gone[rising])
         spent = softening_energy(np.minimum(omega[rises], 1.0), **of) - softening_energy(before[rises], **of)
         self._dissipate(rising, spent, False)
-        self.rising = rising[(omega[rises] < 1.0) & (self.coupling[rising] > 0.0)]
+        self.rising = self._weakened(rising[(omega[rises] < 1.0) & (self.coupling[rising] > 0.0)])
         for n in gone.tolist():
             # Its last shear force went with it: YADE leaves that of the step before.
             self._dissipate(n, 0.5 * self.contacts[n].phys.shearForce.squaredNorm() / self.kt[n], True)
@@ -281,18 +285,18 @@ class CpmBonds(BondLog):
         before, coupling = self.omega[numbers], self.coupling[numbers]
         left = np.maximum((1.0 - before) / (1.0 - coupling * before) - slip / self.slip_end[numbers], 0.0)
         omega = np.minimum((1.0 - left) / (1.0 - coupling * left), SPENT)
-        normal, shear = forces[:, 3:6], forces[:, 6:]
-        Fn, Ft = -_dot(normal, forces[:, :3]), np.sqrt(_dot(shear, shear))
+        normal, shear = forces[3:6], forces[6:]
+        Fn, Ft = -_dot(normal, forces[:3]), np.sqrt(_dot(shear, shear))
         kept = np.where(Fn > 0.0, (1.0 - omega) / (1.0 - before), 1.0)
         self._dissipate(numbers, 0.5 * Fn**2 * (1.0 - kept) / (self.kn[numbers] * (1.0 - before)), False)
-        self.places.write("normal_force", numbers, normal * kept[:, None])
+        self.places.write("normal_force", numbers, normal * kept)
         # Where every step is sampled, the slip of the next one is in its sample.
         if self.between_looks > 1:
             limit = np.maximum(left * self.Rt[numbers] - self.mu[numbers] * kept * Fn, 0.0)
             falls = Ft > limit
             fallen = numbers[falls]
             self._dissipate(fallen, 0.5 * (Ft[falls]**2 - limit[falls]**2) / self.kt[fallen], True)
-            self.places.write("shear_force", fallen, shear[falls] * (limit[falls] / Ft[falls])[:, None])
+            self.places.write("shear_force", fallen, shear[:, falls] * (limit[falls] / Ft[falls]))
         for n, damage in zip(numbers.tolist(), omega.tolist()):
             phys = self.contacts[n].phys
             phys.setDamage(damage)
@@ -333,8 +337,8 @@ class CpmBonds(BondLog):
             self._separate(n)
         for n in np.flatnonzero(self.omega * (self.status != SEPARATED)).tolist():
             self.contacts[n].phys.setDamage(self.contacts[n].phys.omega)
-        # A restart does not know them.
-        self.rising = self.rising[:0]
+        # A restart does not know them, and until the next look some of them may leave.
+        self.rising = self._weakened(np.zeros(0, int))
         self._prepare()
 
     def _shift(self, n, shift):
@@ -350,7 +354,7 @@ class CpmBonds(BondLog):
         """Strain energy (J) of all bonds, sum of Fn^2/2kn + Ft^2/2kt with the secant kn of softened ones."""
         self.look_at_all()
         n = np.flatnonzero(self.status != SEPARATED)
-        normal, force, shear = np.split(self.places.read("forces", n), 3, axis=1)
+        normal, force, shear = np.split(self.places.read("forces", n), 3)
         kept = np.where(_dot(force, normal) < 0.0, 1.0 - self.omega[n], 1.0)
         return math.fsum(0.5 * (_dot(force, force) / (self.kn[n] * kept) + _dot(shear, shear) / self.kt[n]))
 
@@ -362,11 +366,11 @@ class CpmBonds(BondLog):
         there = np.flatnonzero(self.status != SEPARATED)
         return {**super().state(), "dissipated": self.dissipated.copy(), "by_slip": self.by_slip.copy(),
                 "slip_taken": self.slip_taken.copy(), "omega": self.omega.copy(), "active": self.active.copy(),
-                "strain": self.places.read("strain", there), "plastic_strain": self.places.read("slipped", there)}
+                "strain": self.places.read("strain", there).T, "plastic_strain": self.places.read("slipped", there).T}
 
     def restore(self, state):
         super().restore(state)
         for name in ("dissipated", "by_slip", "slip_taken", "omega", "active"):
             setattr(self, name, state[name].copy())
         there = np.flatnonzero(self.status != SEPARATED)
-        self.strains = there, self.omega[there], state["strain"], state["plastic_strain"]
+        self.strains = there, self.omega[there], state["strain"].T, state["plastic_strain"].T

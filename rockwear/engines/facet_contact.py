@@ -73,7 +73,7 @@ class FacetContact(ToolContact):
         stored = self._energy(known=self.shear_before) if self.reshaped else 0.0
         self.notches = []
         successions = [pair for rock, group in self.shared for pair in self._select(rock, group)]
-        self._sample_all()
+        self._sample_all(self._real())
         acting = {pieces(new): old for old, new in successions}
         for one, other in self._pairs():
             self._join(one, other, acting.get(pieces(one), one))
@@ -82,7 +82,7 @@ class FacetContact(ToolContact):
         if self.reshaped:
             self.reshaping_energy += self._energy() - stored
         self.reshaped = False
-        self._store_shear()
+        self._store_shear(self._real())
 
     def shape_has_changed(self):
         """The contacts of the next step are those with another shape."""

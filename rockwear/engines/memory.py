@@ -22,8 +22,8 @@ INSTANCE, HOLDER = 40, 16
 references), and from that of a holder to its pointer to the object (behind its functions and the next holder)."""
 SIZE = 8
 """Bytes of a number, and of a pointer."""
-MEMORY = np.frombuffer((ctypes.c_double * 2**44).from_address(SIZE))
-"""All memory that a process of 64 bits may have, but for its first number."""
+MEMORY = np.frombuffer((ctypes.c_double * 2**45).from_address(SIZE))
+"""All memory that a process may have with addresses of 48 bits, but for its first number."""
 WORDS = MEMORY.view(np.int64)
 """The same as integers: pointers, counts, numbers of bodies."""
 MARKS = (0.31415926535, -9.87654321e-3, 5.55e11)
@@ -62,7 +62,7 @@ def _found(vector, values):
         if not len(pointer):
             return False
         address = int(pointer[0])
-    return address % SIZE == 0 and np.array_equal(_peek(address, 3), values)
+    return address % SIZE == 0 and address < 2**48 and np.array_equal(_peek(address, 3), values)
 
 
 def _require(condition, what):
@@ -116,23 +116,27 @@ class Places:
         columns = {name: [(k, along) for along in range(3)] for name, k in order.items()}
         columns |= {name: [(order[vector], behind)] for name, (vector, behind) in numbers.items()}
         columns |= {name: [column for part in parts for column in columns[part]] for name, parts in groups.items()}
-        self.columns = {name: np.array(of).T for name, of in columns.items()}
-        self.places = {name: np.zeros((count, len(of)), np.int64) for name, of in columns.items()}
+        self.rows = {name: np.array(of).T[:, :, None] for name, of in columns.items()}
+        self.places = {name: np.zeros((len(of), count), np.int64) for name, of in columns.items()}
 
     def find(self, numbers, objects):
         """The objects of these numbers (k,) are `objects` from now on."""
-        first = np.array([[place(vector(found)) for vector in self.vectors.values()] for found in objects], np.int64)
-        for name, (vector, along) in self.columns.items():
-            self.places[name][numbers] = first.reshape(-1, len(self.vectors))[:, vector] + along
+        first = np.array([[place(vector(found)) for found in objects] for vector in self.vectors.values()], np.int64)
+        for name, (vector, along) in self.rows.items():
+            self.places[name][:, numbers] = first[vector[:, 0]] + along
+
+    def of(self, name, numbers):
+        """(c, k) indices in MEMORY of what lies under this name in the objects (k,)."""
+        return self.places[name].take(numbers, axis=1)
 
     def read(self, name, numbers):
-        """(k, c) what lies under this name in the objects (k,)."""
+        """(c, k) what lies under this name in the objects (k,)."""
         # MEMORY has no end that an index could be beyond, and to look for one takes time.
-        return MEMORY.take(self.places[name].take(numbers, axis=0), mode="wrap")
+        return MEMORY.take(self.of(name, numbers), mode="wrap")
 
     def write(self, name, numbers, values):
-        """Set it to the values, (k, c) or what broadcasts to it."""
-        MEMORY[self.places[name].take(numbers, axis=0)] = values
+        """Set it to the values, (c, k) or what broadcasts to it."""
+        MEMORY[self.of(name, numbers)] = values
 
 
 # ---- contacts

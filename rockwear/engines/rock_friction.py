@@ -43,23 +43,22 @@ class RockContacts(Engine):
         self.collider = yade_engine(InsertionSortCollider)
         self.seen = self.collider.numAction
         self.bonds.parted.clear()
+        places, pairs = self._possible()
         # What Python holds keeps its place in memory.
-        before, self.held = self.held, {}
-        for place, pair in self._possible():
-            interaction = before.get(place)
+        known = list(map(self.held.get, places))
+        for k, interaction in enumerate(known):
             # YADE would end where it is asked for contacts of an erased body.
-            if not interaction and O.bodies[pair[0]] and O.bodies[pair[1]]:
-                interaction = O.interactions[pair]
-            if interaction:
-                self.held[place] = interaction
+            if interaction is None and all(O.bodies[body] for body in pairs[k]):
+                known[k] = O.interactions[pairs[k]]
+        self.held = {place: interaction for place, interaction in zip(places, known) if interaction is not None}
         self.possible = list(self.held.values())
         self.places = np.fromiter(self.held, np.int64, len(self.held))
 
     def _possible(self):
-        """[(place in memory, its two bodies)] of each pair of rock particles that is no bond, ordered by the bodies: a
-        loaded scene has them in another order."""
+        """Places in memory and bodies [(first, second)] of all pairs of rock particles that are no bonds, ordered by
+        the bodies: a loaded scene has them in another order."""
         if not len(O.interactions):
-            return []
+            return [], []
         layout, places = contact_layout(), all_contacts()
         phys, bodies = WORDS.take(places + layout["phys"]), WORDS.take(places + layout["bodies"])
         first, second = bodies & 0xffffffff, bodies >> 32
@@ -68,7 +67,7 @@ class RockContacts(Engine):
         loose[made[np.isin(WORDS.take(pointed(phys[made])), bond_classes())]] = False
         first, second, places = first[loose], second[loose], places[loose]
         order = np.lexsort((second, first))
-        return zip(places[order].tolist(), zip(first[order].tolist(), second[order].tolist()))
+        return places[order].tolist(), list(zip(first[order].tolist(), second[order].tolist()))
 
     def _keep_up(self):
         """Bring `possible` up to date, where the collider has run or bonds have parted since."""

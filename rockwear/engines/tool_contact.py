@@ -47,7 +47,7 @@ class ToolContact(Engine):
 
     def connect(self):
         self.find_contacts()
-        self._store_shear()
+        self._store_shear(self._real())
 
     def find_contacts(self):
         """Find the contacts that the collider holds possible now."""
@@ -66,21 +66,25 @@ class ToolContact(Engine):
     def act(self):
         if self.collider.numAction != self.collided:
             self.find_contacts()
+        real = self._real()
         if O.iter % self.sampling_period == 0:
-            self._sample_all()
+            self._sample_all(real)
         if (O.iter + 1) % self.sampling_period == 0:
-            self._store_shear()
+            self._store_shear(real)
 
-    def _sample_all(self):
+    def _real(self):
+        """Those of `possible` that are in contact now."""
+        return [contact for contact in self.possible if contact[0].isReal]
+
+    def _sample_all(self, real):
         elapsed = self.elapsed()
-        for contact in self.possible:
-            if contact[0].isReal:
-                self._sample(contact, elapsed)
+        for contact in real:
+            self._sample(contact, elapsed)
 
-    def _store_shear(self):
+    def _store_shear(self, real):
         # YADE hands out its own vectors, which change with the next step.
         self.shear_before = {(piece, rock): Vector3(interaction.phys.shearForce)
-                             for interaction, piece, rock, _ in self.possible if interaction.isReal}
+                             for interaction, piece, rock, _ in real}
 
     def _sample(self, contact, elapsed):
         interaction, piece, rock, tool_first = contact

@@ -18,7 +18,7 @@ from rockwear.kernels.bond_laws import Cohesive
 from rockwear.kernels.checks import ParameterError
 
 COUNT = 7
-VALUES = np.random.default_rng(1).normal(size=(COUNT, 3)) * 10.0**np.arange(-9, 12, 3)[:, None]
+VALUES = np.random.default_rng(1).normal(size=(3, COUNT)) * 10.0**np.arange(-9, 12, 3)
 LAW = Cohesive(kn=2e10, kt=1e10, bond_tension=1e5, bond_cohesion=2e5, bond_fracture_energy=1.0, mu=0.5)
 VECTORS = cpm_bonds._VECTORS
 
@@ -43,7 +43,7 @@ def write(vector, values):
 
 
 def python(vector, found):
-    return np.array([list(vector(contact)) for contact in found])
+    return np.array([list(vector(contact)) for contact in found]).T
 
 
 def read_and_written():
@@ -51,14 +51,14 @@ def read_and_written():
     wrong, numbers = [], np.array([5, 0, 3])
     for name, vector in VECTORS.items():
         found, places = contacts()
-        for contact, value in zip(found, VALUES.tolist()):
+        for contact, value in zip(found, VALUES.T.tolist()):
             write(vector(contact), value)
         read = places.read(name, numbers)
-        places.write(name, numbers, -VALUES[numbers])
+        places.write(name, numbers, -VALUES[:, numbers])
         expected = VALUES.copy()
-        expected[numbers] *= -1.0
+        expected[:, numbers] *= -1.0
         others = [python(other, found) for key, other in VECTORS.items() if key != name]
-        if (read != VALUES[numbers]).any() or (python(vector, found) != expected).any() or np.any(others):
+        if (read != VALUES[:, numbers]).any() or (python(vector, found) != expected).any() or np.any(others):
             wrong.append(name)
     return wrong
 
@@ -73,22 +73,22 @@ def behind():
     numbers = np.array([6, 1])
 
     def both(name, attribute):
-        return places.read(name, numbers)[:, 0].tolist(), [getattr(found[n].phys, attribute) for n in numbers]
+        return places.read(name, numbers)[0].tolist(), [getattr(found[n].phys, attribute) for n in numbers]
 
     pairs = {"omega": both("omega", "omega"), "cohesion": both("cohesion", "undamagedCohesion")}
-    places.write("cohesion", numbers, np.array([[3.0], [4.0]]))
+    places.write("cohesion", numbers, np.array([3.0, 4.0]))
     return {**pairs, "written": ([3.0, 4.0], both("cohesion", "undamagedCohesion")[1])}
 
 
 def together():
     """Whether a group gives what its vectors and numbers give one by one."""
     found, places = contacts()
-    for contact, value in zip(found, VALUES):
+    for contact, value in zip(found, VALUES.T):
         for k, vector in enumerate(VECTORS.values()):
             write(vector(contact), (value * (k + 1)).tolist())
     numbers = np.array([2, 6, 0, 1])
     return [name for name, parts in cpm_bonds._GROUPS.items() if not np.array_equal(
-        places.read(name, numbers), np.hstack([places.read(part, numbers) for part in parts]), equal_nan=True)]
+        places.read(name, numbers), np.vstack([places.read(part, numbers) for part in parts]), equal_nan=True)]
 
 
 def contacts_of_yade():
