@@ -60,7 +60,7 @@ def test_bonds_carried_in_cpp_keep_the_balance(checks):
     for found in checks["carried in C++"].values():
         for kind, torn in found.items():
             assert torn["finite"] and torn["broken"] > 0.15 and torn["kick"] < 1.1
-            assert abs(torn["residual"]) < {"torn in one step": 1e-5, "crushed in finer steps": 0.001}.get(kind, 0.012)
+            assert abs(torn["residual"]) < {"torn in one step": 1e-5, "crushed in finer steps": 0.001}.get(kind, 0.01)
             assert torn["least crack"] > 0.25
         assert found["torn in one step"]["broken"] == found["torn in a few steps"]["broken"] == 1.0
 
