@@ -20,7 +20,7 @@ import numpy as np
 from calibration import generated
 from calibration.benchmarks import cut_cost
 from calibration.benchmarks import heat as heat_study
-from calibration.benchmarks import loading_speed, scale
+from calibration.benchmarks import loading_speed, scale, steady_cost
 from calibration.campaigns.runs import RunFailed, Runs, run_script
 from rockwear.report import plots
 
@@ -196,9 +196,9 @@ def main(folder):
         drawn(result).savefig(folder / "speed_against_error.png")
     (folder / "bench.json").write_text(json.dumps(result, indent=1), encoding="utf-8")
     generated.record(folder / "speed_against_error.png", folder / "bench.json")
-    print(generated.write_page(folder / "bench.md", [*tables(result), *law_costs(folder), *cut_cost.curve(folder),
-                                                     *loading_speed.curve(folder), *heat_study.curve(folder),
-                                                     *scale.curve(folder)]))
+    parts = law_costs, steady_cost.curve, cut_cost.curve, loading_speed.curve, heat_study.curve, scale.curve
+    lines = [line for part in parts for line in part(folder)]
+    print(generated.write_page(folder / "bench.md", [*tables(result), *lines]))
 
 
 if __name__ == "__main__":

@@ -1,0 +1,59 @@
+"""Cost and errors of the Python engines in a steady cut.
+
+    python3 -m calibration.benchmarks.steady_cost DIR        (part of make bench)
+
+Runs calibration/benchmarks/steady_engines.py. Writes steady_cost.md and steady_engines.json into DIR.
+"""
+import json
+import sys
+from pathlib import Path
+
+from calibration import generated
+from calibration.campaigns.runs import RunFailed, run_script
+
+ERRORS = {"wear": "wear", "tip temperature": "tip temperature", "tool_friction": "friction work at the tool",
+          "rock_friction": "friction work in the rock", "slip in bonds": "work of slip in bonds",
+          "bond_breaking": "energy that bonds dissipate"}
+"""{what the runs count: words}."""
+WORK = "tool_friction", "rock_friction", "slip in bonds", "bond_breaking"
+"""Those that are J."""
+
+
+def table(found):
+    """Lines of Markdown of what calibration/benchmarks/steady_engines.py writes."""
+    exact, sampled, turns = found["exact"], found["found"], found["seconds_a_step"]
+    errors = [[words, f"{100 * (sampled[name] / exact[name] - 1):+.2f} %",
+               f"{100 * (sampled[name] - exact[name]) / exact['tool_work']:+.2f} %" if name in WORK else "–"]
+              for name, words in ERRORS.items()]
+    ratios = ", ".join(f"{100 * (alive / dead - 1):.1f}" for alive, dead in zip(turns["alive"], turns["dead"]))
+    spent = sum(found["seconds"].values())
+    shares = sorted(((seconds / spent, name) for name, seconds in found["seconds"].items()), reverse=True)
+    largest = ", ".join(f"{name.replace('_', ' ')} {100 * share:.0f} %" for share, name in shares if share > 0.01)
+    return ["## Engines in a steady cut", "",
+            f"The cut of make run, {found['discs']} discs, {found['bonds']} bonds: all Python engines cost "
+            f"{100 * found['overhead']:.1f} % of YADE's own step of {1e3 * found['median']['dead']:.2f} ms (processor "
+            f"time; {found['steps']} steps with and without them in turns, {len(turns['dead'])} times, median of the "
+            f"ratios, which are {ratios} %). Of their time: {largest}.", "",
+            f"Over the next {found['sampled']} steps, the defaults against sampling in every step, on the same motion:",
+            "", *generated.table(["sum", "difference", "over the tool's work"], errors),
+            f"The distribution of wear differs by {100 * found['distribution']:.2f} %. The residual of energy is "
+            f"{100 * sampled['residual'] / sampled['tool_work']:+.2f} % of the tool's work with the defaults and "
+            f"{100 * exact['residual'] / exact['tool_work']:+.2f} % with every step sampled.", ""]
+
+
+def curve(folder):
+    """Run it. -> the lines of the table."""
+    folder.mkdir(parents=True, exist_ok=True)
+    run_script("calibration/benchmarks/steady_engines.py", folder)
+    found = json.loads((folder / "steady_engines.json").read_text(encoding="utf-8"))
+    if found["found"]["kinetic energy"] != found["exact"]["kinetic energy"]:
+        raise RunFailed("the two runs that differ in sampling alone have come to another motion")
+    return table(found)
+
+
+if __name__ == "__main__":
+    try:
+        place = Path(sys.argv[1])
+        print(generated.write_page(place / "steady_cost.md", curve(place)))
+    except RunFailed as error:
+        sys.exit(f"steady_cost: {error}")

@@ -1,0 +1,83 @@
+"""Cost of the Python engines in a steady cut, where the tool is in contact all the time, and errors of their samples.
+
+    PYTHONPATH=. yade -n -x -j1 calibration/benchmarks/steady_engines.py --out DIR [--name value ...]
+
+The cut of `make run`, from where its tool has gone BEGIN. The engines run in turns with a loop without them. Then the
+same steps follow twice, with the defaults and with every step sampled: samples do not act back on the motion, so the
+difference is theirs. Writes DIR/steady_engines.json. calibration/benchmarks/steady_cost.py runs it.
+"""
+import json
+import os
+import sys
+from pathlib import Path
+
+import numpy as np
+from yade import O, utils
+
+from calibration.benchmarks.alive_and_dead import alive_and_dead
+from rockwear.engines import base
+from rockwear.run import parameters, servers
+from rockwear.run.main import COMMON
+from rockwear.scenes import steady_cut
+
+FINE = dict(
+    rock="interlocked_sandstone", velocity=8.0, cut_length=0.03, radius_min=2.5e-4, radius_max=3.75e-4,
+    grading_factor=3.0, fine_depth=0.011, window_behind=0.02, window_ahead=0.036, window_height=0.04, depth_of_cut=5e-3,
+    rake=-5.0, clearance=5.0, tip_radius=5e-4, tooth_height=0.02, tooth_width=0.008, tool_radius_min=2e-4,
+    tool_radius_max=2.4e-4, tool_kn=2e10, tool_kt=2e10, contact_damping=0.2, heat=True, wear_acceleration=5e3)
+BEGIN = 0.01
+"""m."""
+STEPS, SAMPLED = 1000, 6000
+"""Steps of a turn, and of the two runs that are compared."""
+
+
+def every_step(scene):
+    """Sample every step from now on."""
+    scene.bonds.between_samples = scene.rock_friction.period = 1
+    runner, = (engine for engine in O.engines if "'rock_friction'" in getattr(engine, "command", ""))
+    runner.iterPeriod = 1
+
+
+def books(scene):
+    """{what: number} of what the engines add up, by now."""
+    balance, heat = scene.output.energy_balance(), scene.heat
+    heat.act()
+    return {**{name: balance[name] for name in ("tool_work", "tool_friction", "rock_friction", "bond_breaking",
+                                                "residual")},
+            "slip in bonds": float(scene.bonds.by_slip.sum()), "wear": scene.tool.volume_balance()["archard"],
+            "tip temperature": float(heat.tool_temperature().max() - scene.heat_model.tool_temperature),
+            "kinetic energy": utils.kineticEnergy()}
+
+
+def sampled(scene, state, folder, change=lambda scene: None):
+    """Run the compared steps from `state`. -> what the books gain, the worn depths, and seconds by engine."""
+    scene.restore(state, folder, folder)
+    change(scene)
+    before = books(scene)
+    base.run(SAMPLED)
+    after, depth = books(scene), scene.output.snapshot()["worn_depth"]
+    gained = {name: after[name] - before[name] for name in after if name not in ("tip temperature", "kinetic energy")}
+    return {**after, **gained}, np.asarray(depth), {engine.name: engine.wall_time for engine in scene.engines}
+
+
+def main():
+    """Measure and write."""
+    servers.close()
+    values = parameters.read([*steady_cut.groups(**FINE), COMMON], sys.argv[1:])
+    folder = Path(values["out"])
+    folder.mkdir(parents=True, exist_ok=True)
+    scene = steady_cut.make(values)
+    scene.build()
+    while scene.programme.distance < BEGIN:
+        scene.run_chunk()
+    cost, state = alive_and_dead(scene, folder, STEPS), scene.state()
+    found, depth, seconds = sampled(scene, state, folder)
+    exact, exact_depth, _ = sampled(scene, state, folder, every_step)
+    (folder / "steady_engines.json").write_text(json.dumps({
+        **cost, "discs": scene.rock.count, "bonds": len(scene.rock.pairs), "steps": STEPS, "sampled": SAMPLED,
+        "seconds": seconds, "found": found, "exact": exact,
+        "distribution": float(np.abs(depth - exact_depth).sum() / exact_depth.sum())}, indent=1), encoding="utf-8")
+    os._exit(0)
+
+
+main()
