@@ -66,8 +66,8 @@ def _found(vector, values):
 
 
 def _require(condition, what):
-    require(condition, "YADE", config.version, f"one that gives its vectors by reference: {what} does not lie in "
-            f"memory where rockwear looks for it (Python {sys.version.split()[0]}); another bond_law does without")
+    require(condition, "YADE", config.version, f"one whose objects lie in memory as in Debian 12 and 13: {what} is not "
+            f"found there (Python {sys.version.split()[0]})")
 
 
 def check(found, of):

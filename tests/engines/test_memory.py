@@ -35,5 +35,5 @@ def test_another_layout_is_refused_in_one_line_and_never_a_wrong_number(found):
     said = [*found["other layouts"], found["by value"], found["out of reach"]]
     assert len(said) == 17
     for line in said:
-        assert line.startswith("YADE = ") and "must be one that gives its vectors by reference" in line
+        assert line.startswith("YADE = ") and "must be one whose objects lie in memory as in Debian 12 and 13" in line
         assert "\n" not in line
