@@ -188,7 +188,7 @@ class CpmBonds(BondLog):
     def act(self):
         """Sample the work of slip and look at the bonds, each in its turn."""
         if O.iter % self.between_looks == 0:
-            self._look(O.iter % self.between_samples == 0)
+            self.look_at_all(O.iter % self.between_samples == 0)
         elif O.iter % self.between_samples == 0:
             there = np.flatnonzero(self.status != SEPARATED)
             self._sample(there, self.places.read("damage", there))
@@ -231,11 +231,8 @@ class CpmBonds(BondLog):
         stored = (_dot(force, force) - _dot(force_before, force_before)) / self.kt[numbers]
         self._dissipate(numbers, 0.5 * self.between_samples * (work - stored), True)
 
-    def look_at_all(self):
-        """Bring damage and status of all bonds up to date."""
-        self._look(False)
-
-    def _look(self, sampled):
+    def look_at_all(self, sampled=False):
+        """Bring damage and status of all bonds up to date; sampled: and sample the slip of the last step."""
         there = np.flatnonzero(self.status != SEPARATED)
         now = self.places.read("damage", there)
         if sampled:
