@@ -41,13 +41,18 @@ class BondLog(Engine):
     def bond(self, numbers):
         """Give the new interactions of the bonds `numbers` (k,) their constants, after the step that made them."""
 
-    def renew(self, left, made):
-        """Rock has been replaced between two steps: the bonds `left` (k,) are gone, `made` (l,) have just been made."""
+    def renew(self, left, made, longer):
+        """Rock has been replaced between two steps: the bonds `left` (k,) are gone, `made` (l,) have just been made.
+
+        longer (l,): m by which the particles of each are further apart than where it is without force.
+        """
         for n in left.tolist():
             self._separate(n)
         self.status[made] = INTACT
         self.bond(made)
         self._take_up(made)
+        for n, shift in zip(made.tolist(), longer.tolist()):
+            self._shift(n, shift)
 
     @abstractmethod
     def _separate(self, n):

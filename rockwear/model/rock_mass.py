@@ -6,6 +6,7 @@ import numpy as np
 
 from rockwear.kernels import packing
 from rockwear.kernels.elastic_moduli import elastic_moduli
+from rockwear.kernels.fragments import pieces
 from rockwear.kernels.strip import StraightStrip
 from rockwear.kernels.voronoi import periodic_cells
 from rockwear.model.rock import RockAssembly, packed_box
@@ -17,8 +18,12 @@ RIM = 6
 MISFIT = 5e-3
 """Parts of the sum of two radii by which their distance may differ from that in untouched rock to be bonded: a crack
 that opens so far has released all force."""
-WHOLE = 0.05
-"""Parts of its radius by which a particle of uncracked rock at the end of the window may be displaced."""
+WHOLE = 1e-3
+"""Parts of the window's height by which uncracked rock at its end may be displaced."""
+MOST_TENSE = 1e-4
+"""Strain by which bonds of rock that enters are pulled at most; it is to enter unbroken."""
+TELLING = 2
+"""Slabs at the end of the window that tell how it is displaced."""
 PARKED = 3.0
 """Particles that are not in the rock yet stand so many heights of the window below it, and their largest diameters
 apart."""
@@ -78,6 +83,11 @@ class RockMass(RockAssembly):
     def slab_length(self):
         """m of a slab."""
         return self.width / SLABS
+
+    @property
+    def most_displaced(self):
+        """m by which uncracked rock at the window's end may be displaced."""
+        return WHOLE * self.height
 
     @property
     def begin(self):
@@ -143,37 +153,54 @@ class RockMass(RockAssembly):
         self.passed += 1
         return moved
 
-    def fit(self, moved, positions):
-        """Fit the slab that enters to the rock that is there. positions: (n, 2) m, where that is now.
+    def fit(self, moved, positions, intact):
+        """Fit the slab that enters to the rock that is there.
 
-        Rock at the end of the window is displaced by the cut: the slab enters displaced as much, by a line fitted over
-        the height. A crack may have reached the end, and chips may lie beyond it. Bonds that would be made longer or
+        positions: (n, 2) m, where that is now; intact: (m,) bool, bonds up to now.
+
+        Rock at the end of the window is displaced and strained by the cut: the slab enters as its displacement goes on.
+        A crack may have reached the end, and chips may lie beyond it. Bonds with the slab that would be longer or
         shorter than in untouched rock by more than MISFIT are left out, and what the slab would overlap by more than
         that is absent from now on.
 
-        -> (k, 2) m of the slab's displacement; bonds (m,) bool that are made; numbers (l,) of the particles in the way.
+        -> (k, 2) m of the slab's displacement; bonds (m,) bool that are made; (m,) m by which bonds are longer than
+        without force; numbers (l,) of the particles in the way.
         """
         i, j = self.pairs.T
         new = np.isin(np.arange(self.count), moved)
         made = self.bonded & (new[i] | new[j])
-        joining = np.unique(self.pairs[made & (new[i] ^ new[j])])
-        joining = joining[~new[joining]]
-        places, displacement = self.places, np.zeros((len(moved), 2))
-        off = positions[joining] - places[joining]
-        whole = np.linalg.norm(off, axis=1) < WHOLE * self.radii[joining]
-        if np.count_nonzero(whole) > 0.5 * len(whole):
-            line = np.polynomial.polynomial.polyfit(self.positions[joining[whole], 1], off[whole], 1)
-            displacement = np.polynomial.polynomial.polyval(self.positions[moved, 1], line).T
+        places = self.places
+        displacement = self._continued(moved, new, positions - places, intact)
         now = positions.copy()
         now[moved] = places[moved] + displacement
-        misfit = np.linalg.norm(now[i] - now[j], axis=1) - self.bond_lengths
-        made &= abs(misfit) <= MISFIT * (self.radii[i] + self.radii[j])
+        longer = np.linalg.norm(now[i] - now[j], axis=1) - self.bond_lengths
+        made &= (new[i] & new[j]) | (abs(longer) <= MISFIT * (self.radii[i] + self.radii[j]))
+        longer = np.minimum(longer, MOST_TENSE * self.bond_lengths)
         overlapping = packing.contacts(now, self.radii, -MISFIT * float(self.radii.min()))
         a, b = overlapping[new[overlapping[:, 0]] ^ new[overlapping[:, 1]]].T
         joined = np.isin(a * self.count + b, self.pairs[made] @ [self.count, 1])
         in_the_way = np.unique(np.where(new[a], b, a)[~joined])
         self.absent[in_the_way] = True
-        return displacement, made & ~self.absent[self.pairs].any(axis=1), in_the_way
+        return displacement, made & ~self.absent[self.pairs].any(axis=1), longer, in_the_way
+
+    def _continued(self, moved, new, displaced, intact):
+        """(k, 2) m, displacement of the slab that enters: that of the rock mass at the end of the window, (n, 2), by
+        least squares with a parabola over the height and a line along the cut, of which the slope is linear over the
+        height. None where half of it is displaced by more than rock that is whole."""
+        points, start = self.positions + self.laps[:, None] * self.period, self.end - self.slab_length
+        there = ~new & ~self.absent
+        piece = pieces(self.count, self.pairs, intact & there[self.pairs].all(axis=1))
+        there &= points[:, 0] > start - TELLING * self.slab_length
+        whole = np.isin(piece, piece[there & self.anchored]) & (np.linalg.norm(displaced, axis=1) < self.most_displaced)
+        telling = np.flatnonzero(there & whole)
+
+        def basis(numbers):
+            x, y = ((points[numbers] - [start, 0.0]) / self.height).T
+            return np.column_stack([np.ones(len(x)), y, y**2, x, x * y])
+
+        if len(telling) < 0.5 * np.count_nonzero(there):
+            return np.zeros((len(moved), 2))
+        return basis(moved) @ np.linalg.lstsq(basis(telling), displaced[telling], rcond=None)[0]
 
     def moduli(self):
         """kernels.elastic_moduli.Moduli of the bonded packing, the same in the strip and in the plane."""

@@ -4,13 +4,12 @@ from yade import O, Quaternion, Vector3
 
 from rockwear.engines.access import rock_states
 from rockwear.engines.bond_log import INTACT
-from rockwear.model.rock_mass import WHOLE
 from rockwear.scenes import yade_scene
 
 FREE = "zXY"
 HELD = "xyzXYZ"
-MOST_LATE = 0.75
-"""Part of a slab by which the window follows late while the tool is under load."""
+MOST_LATE = 2.0
+"""Slabs by which the window follows late while the tool is under load."""
 LOADED = 0.1
 """Part of the largest mean force between two looks above which the tool is under load."""
 NEAR_BOTTOM, MOST_NEAR_BOTTOM = 0.1, 0.02
@@ -37,9 +36,10 @@ class RockWindow:
     behind it, and up to a slab more. Lengths are those of the rock's strip, straight or along an arc.
 
     The slab behind leaves with all that it has become: chips that it broke into go wherever they are, with their
-    momentum and heat. It goes in ahead as untouched rock, at rest, bonded with the rock that is there as it lies, at
-    the rock's first temperature. Chips that lie where it goes in leave too (`cleared` counts their particles), and
-    bonds across a crack that has reached the end are not made (`missed`).
+    momentum and heat. It goes in ahead as untouched rock, at rest, at the rock's first temperature, displaced as the
+    rock that is there; its bonds have the lengths of untouched rock, so that no stress is left when the load falls.
+    Chips that lie where it goes in leave too (`cleared` counts their particles), and bonds across a crack that has
+    reached the end are not made (`missed`).
     This happens between two steps, and balances count it as no change.
 
     rock: model.rock_mass.RockMass; held_below: m, height up to which the end behind is held: what is above may be
@@ -71,8 +71,7 @@ class RockWindow:
     def follow(self, distance):
         """Bring the window along to where the tool has gone so far (m).
 
-        Under load it waits, for part of a slab at most: rock that comes in, at rest, beside rock that is pressed
-        together would be torn off when the load falls.
+        Under load it waits, for some slabs at most: what the load does to the rock that comes in is known least then.
         """
         late = MOST_LATE if self._under_load(distance) else 0.0
         while distance >= self.rock.begin + (1.0 + late) * self.rock.slab_length:
@@ -95,7 +94,7 @@ class RockWindow:
         if self.sides:
             self.boundary.release(self.held)
         moved = rock.advance()
-        displacement, made, in_the_way = rock.fit(moved, positions)
+        displacement, made, longer, in_the_way = rock.fit(moved, positions, bonds.status == INTACT)
         if scene.expansion:
             scene.expansion.renew(moved)
         bottom = moved[rock.anchored[moved]]
@@ -110,8 +109,12 @@ class RockWindow:
         made = np.flatnonzero(made)
         self.cleared += len(in_the_way)
         self.missed += int(np.sum(left & rock.bonded)) - len(made)
-        scene.skip(yade_scene.bond_again(rock, made))
-        bonds.renew(np.flatnonzero(left), made)
+        before = O.iter
+        with yade_scene.standing_still():
+            yade_scene.bond_again(rock, made)
+            bonds.renew(np.flatnonzero(left), made, longer[made])
+            O.step()
+        scene.skip(O.iter - before)
         self._hold_bottom(bottom)
         self._hold_sides()
         scene.open_books(moved)
@@ -150,7 +153,7 @@ class RockWindow:
         # Springs are at rest in untouched rock, unless a crack has moved it.
         places = rock.places
         moved = (rock_states(rock)[:, :2] - places)[numbers]
-        moved[np.linalg.norm(moved, axis=1) > WHOLE * radii[numbers]] = 0.0
+        moved[np.linalg.norm(moved, axis=1) > rock.most_displaced] = 0.0
         normals = rock.strip.turned(np.tile(normal, (count, 1)), rock.strip.unroll(places[numbers]))
         self.boundary.hold(numbers, normals, areas, np.full(count, distance), moved)
 

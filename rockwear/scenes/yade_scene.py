@@ -1,5 +1,6 @@
 """Building blocks of scenes: what is put into YADE, and how."""
 import math
+from contextlib import contextmanager
 
 import numpy as np
 from yade import (
@@ -148,15 +149,21 @@ def make_bonds(rock, bonds):
         O.bodies[i].mat = loose
 
 
+@contextmanager
+def standing_still():
+    """Steps within are of no length and call no engine of ours: contacts and their forces alone are made anew."""
+    engines, time_step = O.engines, O.dt
+    O.engines, O.dt = [ForceResetter(), access.yade_engine(InteractionLoop)], 0.0
+    yield
+    O.engines, O.dt = engines, time_step
+
+
 def bond_again(rock, numbers):
-    """Bond these pairs (k,) of the rock in a scene that runs, stress-free as they lie: steps of no length, in which
-    nothing moves and no engine of ours is called. -> how many."""
+    """Bond these pairs (k,) of the rock in a scene that runs and stands still, without force as they lie."""
     ends = np.unique(rock.pairs[numbers]).tolist()
     bonding, loose = O.materials["bonding rock"], O.materials["loose rock"]
-    interactions, time_step, engines = access.yade_engine(InteractionLoop), O.dt, O.engines
     cohesive = [access.parameter_functor(Ip2_JCFpmMat_JCFpmMat_JCFpmPhys),
                 access.parameter_functor(Ip2_CpmMat_CpmMat_CpmPhys)]
-    O.engines, O.dt = [ForceResetter(), interactions], 0.0
     # YADE's loop cannot make a contact in a loaded scene before its first step.
     O.step()
     for body in ends:
@@ -166,10 +173,8 @@ def bond_again(rock, numbers):
         utils.createInteraction(i, j)
     cohesive[0].cohesiveTresholdIteration, cohesive[1].cohesiveThresholdIter = BONDING
     O.step()
-    O.engines, O.dt = engines, time_step
     for body in ends:
         O.bodies[body].mat = loose
-    return 2
 
 
 def finite_disc(position, radius, *, material, mask, mass, inertia):

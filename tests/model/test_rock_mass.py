@@ -82,18 +82,23 @@ def test_what_is_absent_stands_aside_unbonded_until_it_comes_in():
 def test_untouched_rock_fits_without_a_gap():
     mass = fresh()
     moved = mass.advance()
-    displacement, made, in_the_way = mass.fit(moved, mass.places)
+    displacement, made, longer, in_the_way = mass.fit(moved, mass.places, mass.bonded)
+    assert abs(longer[made]).max() < 1e-15
     assert not len(in_the_way) and abs(displacement).max() < 1e-15
     assert (made == (mass.bonded & np.isin(mass.pairs, moved).any(axis=1))).all()
 
 
-def test_rock_enters_displaced_as_the_rock_that_is_there():
+def test_rock_enters_as_the_displacement_of_the_rock_that_is_there_goes_on():
     mass = fresh()
     moved = mass.advance()
-    shear = np.column_stack([3e-6 + 1e-4 * mass.positions[:, 1], np.full(mass.count, 1e-6)])
-    displacement, made, in_the_way = mass.fit(moved, mass.places + shear)
-    assert displacement == pytest.approx(shear[moved]) and not len(in_the_way)
+    x, y = mass.places.T
+    pressed = 1e-6 * np.column_stack([3 - 90 * x - 2e3 * y**2, 1 + 40 * (x - mass.end) * y])
+    displacement, made, longer, in_the_way = mass.fit(moved, mass.places + pressed, mass.bonded)
+    assert displacement == pytest.approx(pressed[moved], abs=1e-13) and not len(in_the_way)
     assert made.sum() == (mass.bonded & np.isin(mass.pairs, moved).any(axis=1)).sum()
+    i, j = mass.pairs[made].T
+    apart = np.linalg.norm((mass.places + pressed)[i] - (mass.places + pressed)[j], axis=1)
+    assert mass.bond_lengths[made] + longer[made] == pytest.approx(apart, abs=1e-12)
 
 
 def test_a_chip_that_lies_where_rock_enters_is_put_aside():
@@ -101,18 +106,21 @@ def test_a_chip_that_lies_where_rock_enters_is_put_aside():
     places = mass.places.copy()
     chip = int(np.argmax(places[:, 1] - 10 * abs(places[:, 0] - 0.03)))
     places[chip] = mass.end + 0.5 * mass.slab_length, 0.015
-    _, made, in_the_way = mass.fit(mass.advance(), places)
+    _, made, _, in_the_way = mass.fit(mass.advance(), places, mass.bonded & (mass.pairs != chip).all(axis=1))
     assert in_the_way.tolist() == [chip] and mass.absent[chip]
     assert not (made | mass.bonded)[(mass.pairs == chip).any(axis=1)].any()
 
 
 def test_rock_is_not_bonded_across_an_open_crack():
     mass = fresh()
-    places, end = mass.places.copy(), mass.places[:, 0] > mass.end - 2e-3
+    places = mass.places.copy()
+    end = (places[:, 0] > mass.end - 2e-3) & ~mass.anchored
     places[end] -= [8e-5, 0.0]
+    whole = mass.bonded & (end[mass.pairs[:, 0]] == end[mass.pairs[:, 1]])
     moved = mass.advance()
-    _, made, in_the_way = mass.fit(moved, places)
+    _, made, _, in_the_way = mass.fit(moved, places, whole)
     across = np.isin(mass.pairs, moved).sum(axis=1) == 1
+    across &= end[mass.pairs].any(axis=1)
     assert (mass.bonded & across).sum() > 10 and not made[across].any()
 
 
@@ -222,6 +230,6 @@ def test_rock_enters_an_arc_displaced_by_what_is_there_at_its_depth():
     mass = bent()
     moved = mass.advance()
     shift = np.column_stack([2e-6 * (1 + 20 * mass.positions[:, 1]), np.full(mass.count, -1e-6)])
-    displacement, made, in_the_way = mass.fit(moved, mass.places + shift)
+    displacement, made, _, in_the_way = mass.fit(moved, mass.places + shift, mass.bonded)
     assert displacement == pytest.approx(shift[moved]) and not len(in_the_way)
     assert made.sum() == (mass.bonded & np.isin(mass.pairs, moved).any(axis=1)).sum()

@@ -14,6 +14,8 @@ from rockwear.run import parameters
 from rockwear.scenes import dredging, steady_cut
 from rockwear.scenes.parameters import with_defaults
 
+PRESSED = 1e-4
+
 law, file = sys.argv[1:]
 if law == "arc":
     groups = with_defaults(
@@ -48,10 +50,27 @@ for k in range(2 * SLABS):
         whole.append(int(scene.rock.bonded.sum()))
 stored = scene.stored_energy()
 among_rock = sum(i.isReal and max(i.id1, i.id2) < scene.rock.count for i in O.interactions)
+moving = utils.kineticEnergy()
 late = scene.programme.path_time() * scene.time_scale - scene.time
-found = {"late": late, "kinetic": utils.kineticEnergy(), "elastic": stored["elastic"],
-         "cracks": len(scene.bonds.cracks),
-         "bonds": bonds, "whole": whole, "interactions": among_rock}
+
+
+def place(strain):
+    """Press the rock together along the cut, all of it alike."""
+    for body, (x, y) in enumerate(scene.rock.places.tolist()):
+        O.bodies[body].state.pos = ((1.0 - strain) * x, y, 0.0)
+
+
+# Rock that comes in beside rock under load is without force when the load has fallen.
+place(PRESSED)
+for _ in range(3):
+    window.advance()
+place(0.0)
+O.dt = 0.0
+O.step()
+left = max(i.phys.normalForce.norm() / i.phys.kn for i in O.interactions
+           if i.isReal and max(i.id1, i.id2) < scene.rock.count)
+found = {"late": late, "kinetic": moving, "elastic": stored["elastic"], "cracks": len(scene.bonds.cracks),
+         "bonds": bonds, "whole": whole, "interactions": among_rock, "left": left / scene.rock.radii.mean()}
 with open(file, "w", encoding="utf-8") as out:
     json.dump(found, out)
 os._exit(0)
