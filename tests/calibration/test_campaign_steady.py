@@ -22,9 +22,9 @@ def test_the_plan_changes_one_cause_at_a_time_and_measures_every_rock():
         for seed in steady_cut.SEEDS:
             assert f"cut/{steady_cut.slug(case, seed)}" in plan
             assert f"lab/{steady_cut.slug(steady_cut.rock_of(case), 'compression', seed)}" in plan
-    script, values = plan["cut/rotation_free-2"]
-    changed = {name for name in values if values[name] != steady_cut.cut_of("base", 2)[name]}
-    assert changed == {"rotation", "cut_length"}
+    script, values = plan["cut/no_grains-2"]
+    changed = {name for name in values if values[name] != steady_cut.cut_of("base", 2).get(name)}
+    assert changed == {"grain_edge", "cut_length"}
     assert [name.rpartition("-")[0] for name in plan][:9:3] == ["cut/base"] * 3
 
 
@@ -53,7 +53,7 @@ def test_specific_energy_is_over_the_strength_of_the_same_rock(tmp_path):
     row = steady_cut.of_case(tmp_path, "base")
     assert row["ucs"].value == pytest.approx(50.0) and row["energy"].value == pytest.approx(FORCE / DEPTH / 50e6)
     assert row["packings"] == 1 and row["way"] == pytest.approx(9) and row["cost"] == pytest.approx(2 / 0.065)
-    assert steady_cut.of_case(tmp_path, "no scatter") is None
+    assert steady_cut.of_case(tmp_path, "no grains") is None
     assert any("| base | 1 | 9 | 50" in line for line in steady_cut.causes({"base": row}))
 
 
