@@ -44,7 +44,8 @@ CUT = dict(depth_of_cut=5e-3, rake=-5.0, velocity=8.0, tooth_width=8e-3, tooth_h
            tool_kt=1e10, grading_factor=3, fine_depth=0.011, snapshot_period=5e-4, cut_length=0.04)
 """Fine discs as deep as the cut breaks and larger ones below, and soft tool contacts, which allow a longer step."""
 FINE = dict(radius_min=1.25e-4, radius_max=1.875e-4)
-FINE_CUT = dict(tool_radius_min=1e-4, tool_radius_max=1.2e-4, grading_factor=5, window_ahead=0.045, cut_length=0.03)
+FINE_CUT = dict(tool_radius_min=1e-4, tool_radius_max=1.2e-4, grading_factor=5, fine_depth=0.01, window_ahead=0.045,
+                cut_length=0.03, snapshot_period=3e-4)
 LONG = 0.06
 """m of way in the base."""
 BOX, FINE_BOX = dict(width=0.04, height=0.02), dict(width=0.02, height=0.01)
