@@ -49,7 +49,7 @@ setup-test: setup
 run: setup ## cut a sandstone steadily, the tip wearing; report in out/steady_cut/report.html
 	yade -n -x -j1 yade_scripts/steady_cut.py --rock interlocked_sandstone --cut_length 0.03 --velocity 8 \
 	  --radius_min 2.5e-4 --radius_max 3.75e-4 --grading_factor 3 --fine_depth 0.011 \
-	  --window_height 0.04 --window_ahead 0.036 --tool_radius_min 2e-4 --tool_radius_max 2.4e-4 \
+	  --window_height 0.04 --window_ahead 0.05 --tool_radius_min 2e-4 --tool_radius_max 2.4e-4 \
 	  --heat true --wear_acceleration 5e3 --out $(OUT)/steady_cut
 
 test: setup-test ## all tests
