@@ -5,7 +5,7 @@
 N runs at a time (2), or as many as a dask scheduler's workers take; a folder a run; finished runs are not repeated, so
 that an interrupted campaign resumes. --read starts no run and evaluates those that exist. Each rock is also crushed in
 the laboratory, and the base pulled, in the same packings. Writes into DIR steady_cut.md (tables), steady_cut.csv,
-steady_cut.png, steady_cut_forces.png and provenance.json.
+figures of the base and of the finest rock (steady_cut*.png), and provenance.json.
 """
 import csv
 import math
@@ -27,7 +27,7 @@ from rockwear.report.folder import RunFolder
 from rockwear.report.views import cut, steady
 
 SCRIPT, UNIAXIAL = "yade_scripts/steady_cut.py", "yade_scripts/uniaxial.py"
-BASE = "base"
+BASE, FINEST = "base", "discs and grains halved"
 SEEDS = 1, 2, 3
 BEGIN = 3
 """Depths of cut that do not count: the tool has passed the slope at which it begins, which is 2.7 long."""
@@ -55,7 +55,7 @@ SPEEDS = {"compression": 0.04, "tension": 0.02}
 
 ROCKS = {
     BASE: ROCK,
-    "discs and grains halved": dict(ROCK, **FINE),
+    FINEST: dict(ROCK, **FINE),
     "no grains": dict(ROCK, grain_edge=0.0),
     "shear energy 3000": dict(ROCK, bond_shear_energy=3000.0, bond_cohesion=7e6),
     "Weibull modulus 2": dict(ROCK, weibull_modulus=2.0),
@@ -87,6 +87,9 @@ CUTS = {
     "window doubled": dict(window_behind=0.04, window_ahead=0.1, window_height=0.08),
 }
 """How else the base rock is cut."""
+DRAWN = {BASE: "steady_cut", FINEST: "steady_cut_finest"}
+"""{case: name of its figures}."""
+JUDGED = BASE, FINEST, "depth 10 mm"
 CASES = [BASE, *[name for name in ROCKS if name != BASE], *CUTS]
 
 COLUMNS = {"specific energy / UCS": "energy", "mean Fc, kN/m": "force", "peak / mean": "peaks",
@@ -225,23 +228,26 @@ def causes(found):
           *(shown(row[name]) for name in COLUMNS.values()), f"{row['cost']:.0f}"] for case, row in found.items()])
 
 
-def envelope(folder, row):
-    """Lines: the base, judged."""
-    ucs, tension = (strengths(folder, BASE, test) for test in SPEEDS)
-    if not len(ucs) or not len(tension):
-        return []
-    depth = CUT["depth_of_cut"]
-    ranges = expected(compressive_strength=ucs.mean(), tensile_strength=tension.mean(), depth=depth,
-                      rake=math.radians(CUT["rake"]))
-    ours = {"mean_cutting_force": (row["force"], 1e-3, "kN/m"), "peak_over_mean": (row["peaks"], 1, ""),
-            "mean_peak_cutting_force": (row["peak"], 1e-3, "kN/m"),
-            "overbreak": (row["overbreak"], 1 / depth, "depths"),
-            "specific_energy": (row["specific_energy"], 1e-6, "MJ/m³")}
-    lines = [[one.observable.replace("_", " "), f"{low:.3g} to {high:.3g} {unit}", one.basis, shown(measured),
-              one.verdict(measured.value / factor, measured.standard_error / factor)]
-             for one in ranges for measured, factor, unit in [ours[one.observable]]
-             for low, high in [(one.low * factor, one.high * factor)]]
-    return generated.table(["base", "range", "basis", "ours", "verdict"], lines)
+def envelope(folder, found):
+    """Rows of a table: cuts of JUDGED against what is expected of a rock of their strengths. (Tension is that of the
+    base; the bonds are the same.)"""
+    tension, rows = strengths(folder, BASE, "tension"), []
+    for case in JUDGED if len(tension) else ():
+        row = found.get(case)
+        if not row or not math.isfinite(row["ucs"].value):
+            continue
+        depth = CUTS.get(case, CUT).get("depth_of_cut", CUT["depth_of_cut"])
+        ours = {"mean_cutting_force": (row["force"], 1e-3, "kN/m"), "peak_over_mean": (row["peaks"], 1, ""),
+                "mean_peak_cutting_force": (row["peak"], 1e-3, "kN/m"),
+                "overbreak": (row["overbreak"], 1 / depth, "depths"),
+                "specific_energy": (row["specific_energy"], 1e-6, "MJ/m³")}
+        for one in expected(compressive_strength=1e6 * row["ucs"].value, tensile_strength=tension.mean(), depth=depth,
+                            rake=math.radians(CUT["rake"])):
+            measured, factor, unit = ours[one.observable]
+            rows.append([case, one.observable.replace("_", " "), f"{one.low * factor:.3g} to {one.high * factor:.3g} "
+                         f"{unit}", one.basis, shown(measured),
+                         one.verdict(measured.value / factor, measured.standard_error / factor)])
+    return rows
 
 
 def write(folder):
@@ -252,14 +258,17 @@ def write(folder):
              f"the cuts' own records, from {BEGIN} depths of cut on. Way under load: part of the way with a cutting "
              f"force above {LOAD:g} of the mean peak. Work in bonds: part of the tool's work that bonds take "
              "in slip and damage, and those alone that broke in tension. Minutes on a shared core.", "", *causes(found)]
-    if BASE in found:
-        lines += ["## The base against the envelope", "", *envelope(folder, found[BASE])]
-        run = runs_of(folder / "cut", BASE)[0]
-        with matplotlib.rc_context(plots.STYLE):
-            for name, figure in (("steady_cut.png", cut.figure(run, plane.cut_limits(run))),
-                                 ("steady_cut_forces.png", steady.force_figure(run))):
-                files.append(folder / name)
-                figure.savefig(files[-1])
+    if judged := envelope(folder, found):
+        lines += ["## Against the envelope", "",
+                  *generated.table(["cut", "", "range", "basis", "ours", "verdict"], judged)]
+    for case, name in DRAWN.items():
+        if case in found:
+            run = runs_of(folder / "cut", case)[0]
+            with matplotlib.rc_context(plots.STYLE):
+                for end, figure in (("", cut.figure(run, plane.cut_limits(run))),
+                                    ("_forces", steady.force_figure(run))):
+                    files.append(folder / f"{name}{end}.png")
+                    figure.savefig(files[-1])
     with open(files[0], "w", encoding="utf-8", newline="") as file:
         csv.writer(file).writerows([["case", "quantity", "mean", "standard error"],
                                     *([case, name, *value] for case, row in found.items()

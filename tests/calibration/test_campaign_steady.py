@@ -57,6 +57,21 @@ def test_specific_energy_is_over_the_strength_of_the_same_rock(tmp_path):
     assert any("| base | 1 | 9 | 50" in line for line in steady_cut.causes({"base": row}))
 
 
+def test_cuts_are_judged_at_their_own_depth_and_strength(tmp_path):
+    for case in ("base", "depth_10_mm"):
+        write_run(tmp_path / f"cut/{case}-1")
+    write(tmp_path / "lab/base-compression-1", {"peak_stress": 50e6})
+    assert not steady_cut.envelope(tmp_path, {"base": steady_cut.of_case(tmp_path, "base")})
+    write(tmp_path / "lab/base-tension-1", {"tensile_strength": 4e6})
+    found = {case: steady_cut.of_case(tmp_path, case) for case in ("base", "depth 10 mm")}
+    judged = {tuple(row[:2]): row[2:] for row in steady_cut.envelope(tmp_path, found)}
+    # 30 kN/m at a UCS of 50 MPa.
+    assert judged["base", "mean cutting force"][::3] == ["66 to 144 kN/m", "below"]
+    assert judged["base", "specific energy"][::3] == ["5 to 20 MJ/m³", "inside"]
+    assert ("depth 10 mm", "mean cutting force") not in judged
+    assert judged["depth 10 mm", "overbreak"][3] == "inside"
+
+
 def write(folder, results, **entries):
     """A made-up summary."""
     folder.mkdir(parents=True)
