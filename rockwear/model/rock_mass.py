@@ -70,8 +70,13 @@ class RockMass(RockAssembly):
         return self.height if self.surface is None else np.interp(x, *self.surface)
 
     def _above_surface(self, numbers):
-        points = self.positions[numbers] + self.laps[numbers, None] * self.period
-        return points[:, 1] > self.top(points[:, 0])
+        x, y = self.points[numbers].T
+        return y > self.top(x)
+
+    @property
+    def points(self):
+        """(n, 2) m of the particles in the strip, in untouched rock."""
+        return self.positions + self.laps[:, None] * self.period
 
     @property
     def bond_lengths(self):
@@ -102,7 +107,7 @@ class RockMass(RockAssembly):
     @property
     def places(self):
         """(n, 2) m of the particles in untouched rock; absent ones stand aside."""
-        places = self.strip.place(self.positions + self.laps[:, None] * self.period)
+        places = self.strip.place(self.points)
         aside = np.flatnonzero(self.absent)
         spacing = 2.5 * float(self.radii.max())
         row, column = np.divmod(aside, max(1, int(self.width / spacing)))
@@ -187,7 +192,7 @@ class RockMass(RockAssembly):
         """(k, 2) m, displacement of the slab that enters: that of the rock mass at the end of the window, (n, 2), by
         least squares with a parabola over the height and a line along the cut, of which the slope is linear over the
         height. None where half of it is displaced by more than rock that is whole."""
-        points, start = self.positions + self.laps[:, None] * self.period, self.end - self.slab_length
+        points, start = self.points, self.end - self.slab_length
         there = ~new & ~self.absent
         piece = pieces(self.count, self.pairs, intact & there[self.pairs].all(axis=1))
         there &= points[:, 0] > start - TELLING * self.slab_length

@@ -88,13 +88,13 @@ class RockWindow:
         """Move on by a slab; distance: m that the tool has gone."""
         scene, rock, bonds = self.scene, self.rock, self.scene.bonds
         scene.close_books()
-        positions = rock_states(rock)[:, :2]
+        positions, intact = rock_states(rock)[:, :2], bonds.status == INTACT
         if self.book:
-            self.book(positions=positions, intact=bonds.status == INTACT, distance=distance)
+            self.book(positions=positions, intact=intact, distance=distance)
         if self.sides:
             self.boundary.release(self.held)
         moved = rock.advance()
-        displacement, made, longer, in_the_way = rock.fit(moved, positions, bonds.status == INTACT)
+        displacement, made, longer, in_the_way = rock.fit(moved, positions, intact)
         if scene.expansion:
             scene.expansion.renew(moved)
         bottom = moved[rock.anchored[moved]]
