@@ -7,11 +7,10 @@ case is compared with the brittle cut of the same turn, and the median over the 
 listed beside wall time, because other processes disturb it less.
 """
 import json
-import sys
-from pathlib import Path
 from statistics import median
 
 from calibration import generated
+from calibration.benchmarks import one_curve
 from calibration.campaigns.runs import run_script
 
 TURNS = 5
@@ -54,4 +53,4 @@ def curve(folder):
 
 
 if __name__ == "__main__":
-    print("\n".join(curve(Path(sys.argv[1]))))
+    one_curve.main(curve)

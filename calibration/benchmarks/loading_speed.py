@@ -7,13 +7,12 @@ matters, not the rate of strain: the error grows with the time that a wave takes
 proportional to the specimen's size, while the rate of strain is inversely proportional to it. So 525 discs are enough.
 """
 import json
-import sys
-from pathlib import Path
 
 import matplotlib
 import numpy as np
 
 from calibration import generated
+from calibration.benchmarks import one_curve
 from calibration.campaigns.runs import Runs
 from calibration.campaigns.uniaxial import ROCKS, SCRIPT, SMALL, TESTS, folder_of
 from rockwear.report import plots
@@ -110,5 +109,4 @@ def curve(folder):
 
 
 if __name__ == "__main__":
-    place = Path(sys.argv[1] if len(sys.argv) > 1 else "out/bench")
-    print(generated.write_page(place / "loading_speed.md", curve(place)))
+    one_curve.main(curve)

@@ -9,13 +9,12 @@ import json
 import math
 import os
 import subprocess
-import sys
-from pathlib import Path
 from statistics import median
 
 import matplotlib
 
 from calibration import generated
+from calibration.benchmarks import one_curve
 from calibration.campaigns.runs import ROOT, RunFailed, command, run_script
 from rockwear.report import plots
 
@@ -141,8 +140,4 @@ def curve(folder):
 
 
 if __name__ == "__main__":
-    try:
-        place = Path(sys.argv[1])
-        print(generated.write_page(place / "scale.md", curve(place)))
-    except RunFailed as error:
-        sys.exit(f"scale: {error}")
+    one_curve.main(curve)

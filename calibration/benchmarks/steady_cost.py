@@ -5,10 +5,9 @@
 Runs calibration/benchmarks/steady_engines.py. Writes steady_cost.md and steady_engines.json into DIR.
 """
 import json
-import sys
-from pathlib import Path
 
 from calibration import generated
+from calibration.benchmarks import one_curve
 from calibration.campaigns.runs import RunFailed, run_script
 
 ERRORS = {"wear": "wear", "tip temperature": "tip temperature", "tool_friction": "friction work at the tool",
@@ -52,8 +51,4 @@ def curve(folder):
 
 
 if __name__ == "__main__":
-    try:
-        place = Path(sys.argv[1])
-        print(generated.write_page(place / "steady_cost.md", curve(place)))
-    except RunFailed as error:
-        sys.exit(f"steady_cost: {error}")
+    one_curve.main(curve)

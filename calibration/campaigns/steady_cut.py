@@ -18,7 +18,8 @@ import numpy as np
 from calibration import generated
 from calibration.campaigns.runs import PLACEMENT, Runs, placement, wait_for
 from rockwear.kernels import steady_record
-from rockwear.kernels.cutting_envelope import expected
+from rockwear.kernels.cut_sizes import cut_sizes
+from rockwear.kernels.cutting_envelope import RELATIONS, expected, exponent
 from rockwear.kernels.fragments import chip_length
 from rockwear.kernels.groove import groove_results
 from rockwear.kernels.steady_record import Measured
@@ -27,7 +28,7 @@ from rockwear.report.folder import RunFolder
 from rockwear.report.views import cut, steady
 
 SCRIPT, UNIAXIAL = "yade_scripts/steady_cut.py", "yade_scripts/uniaxial.py"
-BASE, FINEST = "base", "discs and grains halved"
+BASE, EIGHT, FINEST = "base", "eight discs", "32 discs"
 SEEDS = 1, 2, 3
 BEGIN = 3
 """Depths of cut that do not count: the tool has passed the slope at which it begins, which is 2.7 long."""
@@ -37,63 +38,51 @@ IN_TENSION = 1
 """Mode of a crack (cracks.csv) on which more work was spent in tension than in slip."""
 
 ROCK = dict(rock="interlocked_sandstone")
-DISCS = dict(radius_min=2.5e-4, radius_max=3.75e-4)
-"""The resolution at which the rock was measured; a grain is of some five discs."""
-CUT = dict(depth_of_cut=5e-3, rake=-5.0, velocity=8.0, tooth_width=8e-3, tooth_height=20e-3, window_behind=0.02,
-           window_ahead=0.05, window_height=0.04, tool_radius_min=2e-4, tool_radius_max=2.4e-4, tool_kn=1e10,
-           tool_kt=1e10, grading_factor=3, fine_depth=0.011, snapshot_period=5e-4, cut_length=0.04)
-"""Fine discs as deep as the cut breaks and larger ones below, and soft tool contacts, which allow a longer step."""
-FINE = dict(radius_min=1.25e-4, radius_max=1.875e-4)
-FINE_CUT = dict(tool_radius_min=1e-4, tool_radius_max=1.2e-4, grading_factor=5, fine_depth=0.01, window_ahead=0.045,
-                cut_length=0.03, snapshot_period=3e-4)
-LONG = 0.06
-"""m of way in the base."""
-BOX, FINE_BOX = dict(width=0.04, height=0.02), dict(width=0.02, height=0.01)
-"""Of the laboratory, m; loaded along its length; the second for fine discs."""
+CUT = dict(depth_of_cut=5e-3, discs_per_depth=16, rake=-5.0, velocity=8.0, snapshot_period=5e-4, cut_length=0.06)
+LONG, SHORT = 0.115, 0.03
+"""m of way in the base, which are twenty depths of cut that count, and with small discs."""
+BOX = dict(width=0.02, height=0.01)
+"""Of the laboratory, m; loaded along its length; as much larger or smaller as the discs are."""
 SPEEDS = {"compression": 0.04, "tension": 0.02}
 """Of each platen, m/s."""
 
 ROCKS = {
     BASE: ROCK,
-    FINEST: dict(ROCK, **FINE),
+    EIGHT: dict(ROCK, discs_per_depth=8),
+    FINEST: dict(ROCK, discs_per_depth=32),
     "no grains": dict(ROCK, grain_edge=0.0),
     "shear energy 3000": dict(ROCK, bond_shear_energy=3000.0, bond_cohesion=7e6),
+    "strengths halved": dict(ROCK, bond_tension=1.5e6, bond_cohesion=4.25e6, bond_fracture_energy=22.5,
+                             bond_shear_energy=250.0),
     "Weibull modulus 2": dict(ROCK, weibull_modulus=2.0),
-    "discs halved": dict(ROCK, grain_edge=8e-4, **FINE),
-    "shear energy 300": dict(ROCK, bond_shear_energy=300.0),
     "fracture energy 30": dict(ROCK, bond_fracture_energy=30.0),
-    "friction 0.4": dict(ROCK, mu=0.4),
-    "rotation blocked": dict(ROCK, rotation="blocked"),
 }
 """Rocks that are cut as the base is. More shear energy makes a rock stronger: there the cohesion is lower."""
 CUTS = {
-    "velocity 4 m/s": dict(velocity=4.0, snapshot_period=1e-3),
-    "depth 10 mm": dict(depth_of_cut=0.01, cut_length=0.06, window_behind=0.03, window_ahead=0.09, window_height=0.06,
-                        tooth_width=0.012, tooth_height=0.035, fine_depth=0.02),
     "wear flat 1 mm": dict(wear_flat=1e-3),
-    "rake 10°": dict(rake=10.0),
-    "tool friction 0.6": dict(tool_mu=0.6),
-    "clearance 12°, tip 0.2 mm": dict(clearance=12.0, tip_radius=2e-4),
     "wear flat 2 mm": dict(wear_flat=2e-3),
     "rake -15°": dict(rake=-15.0),
-    "velocity 2 m/s": dict(velocity=2.0, snapshot_period=2e-3),
-    "depth 2.5 mm": dict(depth_of_cut=2.5e-3, cut_length=0.02, window_behind=0.01, window_ahead=0.025,
-                         window_height=0.02, tooth_width=4e-3, tooth_height=0.01, fine_depth=0.0055),
+    "rake 10°": dict(rake=10.0),
+    "depth 2.5 mm": dict(depth_of_cut=2.5e-3, discs_per_depth=8, cut_length=0.04),
+    "depth 10 mm": dict(depth_of_cut=0.01, discs_per_depth=32),
+    "velocity 4 m/s": dict(velocity=4.0, snapshot_period=1e-3),
+    "window doubled": dict(window_behind=0.024, window_ahead=0.05, window_height=0.04),
+    "tool friction 0.6": dict(tool_mu=0.6),
+    "clearance 12°, tip 0.2 mm": dict(clearance=12.0, tip_radius=2e-4),
     "boundary fixed": dict(boundary="fixed"),
-    "boundary free": dict(boundary="free"),
-    "blow on a face": dict(begin_angle=90.0),
-    "damping 0": dict(background_damping=0.0),
     "damping 5000 1/s": dict(background_damping=5e3),
-    "window doubled": dict(window_behind=0.04, window_ahead=0.1, window_height=0.08),
+    "eight discs, window doubled": dict(window_behind=0.02, window_ahead=0.05, window_height=0.04, tooth_height=0.02,
+                                        grading_factor=3, fine_depth=0.011),
 }
-"""How else the base rock is cut."""
+"""How else the base rock is cut, or the rock that a case begins with."""
 DRAWN = {BASE: "steady_cut", FINEST: "steady_cut_finest"}
 """{case: name of its figures}."""
-JUDGED = BASE, FINEST, "depth 10 mm"
+JUDGED = BASE, EIGHT, FINEST, "depth 2.5 mm", "depth 10 mm"
 CASES = [BASE, *[name for name in ROCKS if name != BASE], *CUTS]
 
 COLUMNS = {"specific energy / UCS": "energy", "mean Fc, kN/m": "force", "peak / mean": "peaks",
-           "overbreak / depth": "overbreak", "chip length / depth": "chip", "thrust / cutting": "thrust",
+           "overbreak / depth": "overbreak", "chip length / depth": "chip", "mean Fn, kN/m": "pressed",
+           "thrust / cutting": "thrust",
            "friction work, kN/m": "friction", "way under load": "loaded", "work in bonds": "bonds",
            "in tension": "tension"}
 """{heading: quantity}."""
@@ -104,28 +93,26 @@ def slug(*words):
     return "-".join("".join(c if c.isalnum() or c in "-." else "_" for c in str(word)) for word in words)
 
 
-def is_fine(rock):
-    """Whether a rock has the fine discs."""
-    return rock.items() >= FINE.items()
-
-
 def rock_of(case):
     """The rock that a case cuts."""
-    return case if case in ROCKS else BASE
+    return case if case in ROCKS else next((rock for rock in ROCKS if case.startswith(f"{rock}, ")), BASE)
 
 
 def cut_of(case, seed):
     """Parameters of a cut."""
-    rock = ROCKS[rock_of(case)]
-    other = {"cut_length": LONG} if case == BASE else FINE_CUT if is_fine(rock) else {}
-    return {**DISCS, **CUT, **other, **rock, **CUTS.get(case, {}), "seed": seed, "report": "false"}
+    length = {BASE: dict(cut_length=LONG), FINEST: dict(cut_length=SHORT)}.get(case, {})
+    return {**CUT, **length, **ROCKS[rock_of(case)], **CUTS.get(case, {}), "seed": seed, "report": "false"}
 
 
 def test_of(rock, test, seed):
-    """Parameters of a laboratory test."""
-    box = FINE_BOX if is_fine(ROCKS[rock]) else BOX
-    return {**DISCS, **box, **ROCKS[rock], "test": test, "speed": SPEEDS[test], "seed": seed, "snapshot_period": 1,
-            "report": "false"}
+    """Parameters of a laboratory test: discs as in the cut, and a specimen that is as much larger as they are."""
+    values = {**CUT, **ROCKS[rock]}
+    sizes, base = (cut_sizes(CUT["depth_of_cut"], case["discs_per_depth"]) for case in (values, CUT))
+    factor = sizes["radius_min"] / base["radius_min"]
+    return {**{name: factor * length for name, length in BOX.items()},
+            **{name: sizes[name] for name in ("radius_min", "radius_max")},
+            **{name: value for name, value in ROCKS[rock].items() if name != "discs_per_depth"},
+            "test": test, "speed": SPEEDS[test], "seed": seed, "snapshot_period": 1, "report": "false"}
 
 
 def plan(cases):
@@ -173,6 +160,7 @@ def of_run(run):
     return {"force": scaled(mean, 1e-3), "energy": scaled(mean, 1 / depth), "peak": scaled(peaks.mean(), 1e-3),
             "peaks": steady_record.quotient(peaks.mean(), mean), "overbreak": scaled(overbreak, 1 / depth),
             "chip": scaled(chip, 1 / depth), "thrust": steady_record.ratio(distance, pressed, total, begin),
+            "pressed": scaled(steady_record.mean(distance, pressed, begin), 1e-3),
             "friction": scaled(steady_record.mean(distance, friction, begin), 1e-3),
             "loaded": steady_record.mean(distance, loaded, begin),
             "bonds": Measured(energy["bond_breaking"] / energy["tool_work"], math.nan),
@@ -250,6 +238,45 @@ def envelope(folder, found):
     return rows
 
 
+def relations(found):
+    """Rows of a table: what several cuts tell together, against RELATIONS."""
+    ours, known, rows = {}, found.get(BASE), []
+    forces = {name: row["force"] for name, row in found.items() if math.isfinite(row["force"].standard_error)}
+    if BASE in forces:
+        depths, rakes = ({CUTS.get(name, {}).get(what, CUT[what]): force for name, force in forces.items()
+                          if name == BASE or what in CUTS.get(name, {})} for what in ("depth_of_cut", "rake"))
+        if len(depths) > 1:
+            ours["chip_force_exponent", ""] = exponent(list(depths), *np.array(list(depths.values())).T)
+        if len(rakes) > 1:
+            ours["force_over_rake", ""] = slope(np.radians(list(rakes)), *1e3 * np.array(list(rakes.values())).T)
+    for name, change in CUTS.items():
+        if known and name in found and "wear_flat" in change:
+            more = {what: difference(found[name][what], known[what]) for what in ("force", "pressed")}
+            ours["flat_thrust", name] = scaled(more["pressed"], 1e-3 / (known["ucs"].value * change["wear_flat"]))
+            part = more["force"].value / more["pressed"].value
+            ours["flat_cutting_over_thrust", name] = Measured(part, abs(part) * math.hypot(
+                *(one.standard_error / one.value for one in more.values())))
+    for one in RELATIONS:
+        for (observable, case), measured in ours.items():
+            if one.observable == observable:
+                rows.append([case, one.case, f"{one.low:g} to {one.high:g} {one.unit}", one.basis, shown(measured),
+                             one.verdict(*measured)])
+    return rows
+
+
+def difference(one, other):
+    """Measured difference of two independent ones."""
+    return Measured(one.value - other.value, math.hypot(one.standard_error, other.standard_error))
+
+
+def slope(x, values, errors):
+    """Measured slope of values (k,) over x (k,), weighted with their standard errors."""
+    weight = errors**-2.0
+    x = x - np.average(x, weights=weight)
+    spread = np.sum(weight * x**2)
+    return Measured(float(np.sum(weight * x * values) / spread), float(spread**-0.5))
+
+
 def write(folder):
     """Tables and figures of all runs that exist. -> the tables, in Markdown."""
     found = {case: row for case in CASES if (row := of_case(folder, case))}
@@ -260,7 +287,7 @@ def write(folder):
              "in slip and damage, and those alone that broke in tension. Minutes on a shared core.", "", *causes(found)]
     if judged := envelope(folder, found):
         lines += ["## Against the envelope", "",
-                  *generated.table(["cut", "", "range", "basis", "ours", "verdict"], judged)]
+                  *generated.table(["cut", "", "range", "basis", "ours", "verdict"], [*judged, *relations(found)])]
     for case, name in DRAWN.items():
         if case in found:
             run = runs_of(folder / "cut", case)[0]

@@ -105,15 +105,16 @@ def file(name, value, unit):
 
 
 class Presets(ABC):
-    """A file that gives other parameters their defaults."""
+    """What gives other parameters their defaults: a rule, or a file. metavar: what help calls the value of a file."""
 
-    @abstractmethod
+    metavar = ""
+
     def path(self, value):
-        """Path of the file that the parameter's value names. Raises ParameterError where there is none."""
+        """Path of the file that the parameter's value names; None of a rule. Raises ParameterError where it is not."""
 
     @abstractmethod
     def defaults(self, value, values):
-        """{name: value} that the file gives. values: of all parameters, without those of the file.
+        """{name: value} of other parameters. values: of all parameters, with the defaults of presets declared before.
 
         Raises ParameterError for a file that cannot be used.
         """
@@ -128,7 +129,7 @@ class Parameter:
     parameter that a scene does not declare is met.
     size_power: powers of the size of the rock's particles with which the value grows, in the plane and in space, so
     that the rock stays the same: lengths grow with it, stresses stay
-    presets: of a parameter whose value names a file with the values of others: see Presets
+    presets: of a parameter whose value gives others their defaults: see Presets
     """
 
     name: str

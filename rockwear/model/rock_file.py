@@ -263,6 +263,8 @@ class RockPresets(Presets):
     1/H) over its part of the crack to break, which grows with the radius as long as H does not.
     """
 
+    metavar = "NAME|FILE"
+
     def __init__(self, declared, *, only=None):
         super().__init__()
         self.declared, self.only = declared, only

@@ -100,7 +100,7 @@ def _files(values, declared):
     """{parameter: Path} of the files that are read."""
     given = {name: p for name, p in parameters.flat(declared).items() if values[name] and (p.rule is file or p.presets)}
     paths = {name: p.presets.path(values[name]) if p.presets else Path(values[name]) for name, p in given.items()}
-    return {name: path for name, path in paths.items() if path.is_file()}
+    return {name: path for name, path in paths.items() if path and path.is_file()}
 
 
 def _identity(name, values, declared):

@@ -34,8 +34,8 @@ def read(groups, arguments):
     """{name: checked value} of all parameters, from `--name value` arguments and the row that yade-batch gives.
 
     groups: Groups, or single Parameters. A flag may stand without a value. Raises ParameterError for an unknown name, a
-    missing value, a broken rule, and for a parameter that is given but not used with the others. What a file of
-    presets gives replaces the declared defaults; what is given beside it goes before.
+    missing value, a broken rule, and for a parameter that is given but not used with the others. What presets give
+    replaces the declared defaults, in the order of their declaration; what is given beside them goes before.
     """
     known = flat(groups)
     given = {**_table_row(), **_arguments(groups, arguments)}
@@ -57,13 +57,12 @@ def _checked(known, given):
 
 
 def _with_presets(known, given):
-    """{name: Parameter} with the defaults of the files that presets name."""
-    values = _checked(known, given)
-    found = {}
-    for name, parameter in known.items():
-        if parameter.presets and values[name]:
-            found.update(parameter.presets.defaults(values[name], values))
-    return {name: replace(parameter, default=found.get(name, parameter.default)) for name, parameter in known.items()}
+    """{name: Parameter} with the defaults that presets give."""
+    for preset in [name for name, parameter in known.items() if parameter.presets]:
+        values = _checked(known, given)
+        found = known[preset].presets.defaults(values[preset], values) if values[preset] else {}
+        known = {name: replace(one, default=found.get(name, one.default)) for name, one in known.items()}
+    return known
 
 
 def _advice(name, known):
@@ -105,8 +104,8 @@ def _parser(groups, usage=None):
 
 def _metavar(parameter):
     options = getattr(parameter.rule, "options", ("true", "false") if parameter.rule is flag else ())
-    if parameter.presets:
-        return "NAME|FILE"
+    if parameter.presets and parameter.presets.metavar:
+        return parameter.presets.metavar
     return "|".join(options) or parameter.unit or {text: "TEXT", file: "FILE"}.get(parameter.rule, "NUMBER")
 
 

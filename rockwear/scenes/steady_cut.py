@@ -8,9 +8,10 @@ from yade import O
 from rockwear.engines.access import rock_states
 from rockwear.engines.bond_log import INTACT
 from rockwear.kernels.checks import require
+from rockwear.kernels.cut_sizes import cut_sizes
 from rockwear.kernels.fragments import chip_length
 from rockwear.kernels.groove import groove_results
-from rockwear.kernels.parameter import Group, Parameter, above_zero, choice, number
+from rockwear.kernels.parameter import Group, Parameter, Presets, above_zero, choice, number, zero_or
 from rockwear.kernels.polygon import reach
 from rockwear.kernels.rigid_motion import Straight
 from rockwear.kernels.steady_record import steady_results, with_error
@@ -27,7 +28,18 @@ LEAST_SPEED = 0.05
 """Part of the cutting velocity with which the ramp of speed begins."""
 BOUNDARIES = "absorbing", "fixed", "free"
 
+
+class OfTheCut(Presets):
+    """kernels.cut_sizes: what the depth of cut and the number of discs in it give."""
+
+    def defaults(self, value, values):
+        return cut_sizes(values["depth_of_cut"], value)
+
+
 WINDOW = Group("rock", (
+    Parameter("discs_per_depth", 0.0, "", zero_or(4, 64), "rock discs in the depth of cut, 16 for a result: gives the "
+              "radii of rock and tool, window, grading, tooth_height and tooth_width; 0: they are given", "ours",
+              presets=OfTheCut()),
     Parameter("window_behind", 0.03, "m", above_zero, "length of the window behind the tip"),
     Parameter("window_ahead", 0.06, "m", above_zero, "length of the window ahead of the tip"),
     Parameter("window_height", 0.04, "m", above_zero, "height of the window"),

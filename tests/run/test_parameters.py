@@ -4,8 +4,8 @@ import pytest
 from rockwear.kernels.bond_laws import BOND_LAWS
 from rockwear.kernels.checks import ParameterError
 from rockwear.kernels.parameter import (
-    Group, Parameter, above_zero, choice, density, duration, flag, integer, law_parameters, listed, number, numbers,
-    speed, stiffness, text)
+    Group, Parameter, Presets, above_zero, choice, density, duration, flag, integer, law_parameters, listed, number,
+    numbers, speed, stiffness, text)
 from rockwear.run import parameters
 
 BONDS = Group("bonds", (Parameter("bond_law", "brittle", "", choice(*BOND_LAWS), "law of the bonds"),
@@ -115,6 +115,27 @@ def test_a_condition_on_what_is_not_used_or_not_declared():
     fourth = Parameter("fourth", 1.0, "", above_zero, "-", when={"second": ("d",)})
     with pytest.raises(ParameterError, match="^fourth = 2: must be left out with second = c$"):
         parameters.read([first, second, fourth], ["--first", "b", "--fourth", "2"])
+
+
+class Scaled(Presets):
+    """Gives one parameter a multiple of another."""
+
+    def __init__(self, name, other):
+        self.name, self.other = name, other
+
+    def defaults(self, value, values):
+        return {self.name: value * values[self.other]}
+
+
+@pytest.mark.parametrize("words, height, width", [
+    ("", 1.0, 1.0), ("--high 2", 2.0, 1.0), ("--wide 2", 1.0, 2.0), ("--high 2 --wide 3", 2.0, 6.0),
+    ("--high 2 --wide 3 --height 4", 4.0, 12.0), ("--high 2 --wide 3 --width 4", 2.0, 4.0)])
+def test_presets_give_defaults_one_after_the_other(words, height, width):
+    groups = [*(Parameter(name, 1.0, "m", above_zero, "-") for name in ("length", "height", "width")),
+              Parameter("high", 0.0, "", number(0), "-", presets=Scaled("height", "length")),
+              Parameter("wide", 0.0, "", number(0), "-", presets=Scaled("width", "height"))]
+    values = parameters.read(groups, words.split())
+    assert (values["height"], values["width"]) == (height, width)
 
 
 @pytest.mark.parametrize("words, error", [

@@ -61,6 +61,20 @@ def test_segments_go_as_far_and_the_process_takes_as_long_as_it_is_slower(tmp_pa
     assert abs(run.summary["balances"]["energy"]["residual"]) < 0.02 * run.summary["balances"]["energy"]["tool_work"]
 
 
+def test_sizes_follow_the_depth_of_cut_and_the_rock_follows_its_discs(tmp_path):
+    given = dict(rock="interlocked_sandstone", depth_of_cut=4e-3, discs_per_depth=4, tooth_width=0.01, cut_length=0.02,
+                 velocity=8.0, report="false")
+    run = run_script(SCRIPT, *arguments(given), "--out", str(tmp_path / "out"), out=tmp_path / "out")
+    assert run.code == 0, run.stderr
+    values = run.summary["parameters"]
+    assert values["radius_min"] == pytest.approx(4e-4) and values["window_height"] == pytest.approx(0.016)
+    # The rock was measured with discs of 0.25 mm and grains of 0.8 mm.
+    assert values["grain_edge"] == pytest.approx(8e-4 * 4e-4 / 2.5e-4) and values["tooth_width"] == 0.01
+    assert value(run, "window_passed") > 0
+    energy = run.summary["balances"]["energy"]
+    assert abs(energy["residual"]) < 0.03 * energy["tool_work"]
+
+
 @pytest.mark.parametrize("law", ["brittle", "cohesive", "arc"])
 def test_rock_at_rest_stays_at_rest_while_the_window_moves_on(law, tmp_path):
     """Two periods of the window over rock that nothing touches: no stress, no crack, as many bonds as at first. And
@@ -75,7 +89,8 @@ def test_rock_at_rest_stays_at_rest_while_the_window_moves_on(law, tmp_path):
 @pytest.mark.parametrize("values, words", [
     (dict(depth_of_cut=0.0131), "depth_of_cut = 0.0131 m"), (dict(window_ahead=0.01), "window_ahead = 0.01 m"),
     (dict(window_behind=0.005), "window_behind = 0.005 m"), (dict(ramp_length=0.02), "cut_length = 0.02 m"),
-    (dict(radius_max=2.1e-3), "radius_max = 0.0021 m"), (dict(tooth_height=0.004), "tooth_height = 0.004 m")])
+    (dict(radius_max=2.1e-3), "radius_max = 0.0021 m"), (dict(tooth_height=0.004), "tooth_height = 0.004 m"),
+    (dict(discs_per_depth=2), "discs_per_depth = 2: must be 0 or between 4 and 64")])
 def test_a_cut_that_has_no_room_is_refused(values, words, tmp_path):
     (code, said), = refusals(SCRIPT, tmp_path, [[*arguments({**SMALL, **values}), "--out", tmp_path / "out"]])
     assert_refused(code, said, words)
