@@ -15,13 +15,13 @@ SLABS = 16
 """Parts of the window that leave it and enter it as one."""
 RIM = 6
 """Largest radii next to bottom and surface that do not count for the moduli."""
-MISFIT = 5e-3
-"""Parts of the sum of two radii by which their distance may differ from that in untouched rock to be bonded: a crack
-that opens so far has released all force."""
+MISFIT = 2e-4
+"""Parts of the window's height by which the distance of two particles may differ from that in untouched rock to be
+bonded. That is some micrometres; a crack of a sandstone has lost its force when it is open by tens."""
 WHOLE = 1e-3
 """Parts of the window's height by which uncracked rock at its end may be displaced."""
-MOST_TENSE = 1e-4
-"""Strain by which bonds of rock that enters are pulled at most; it is to enter unbroken."""
+MOST_TENSE, MOST_PRESSED = 1e-4, 1e-3
+"""Strains by which bonds of rock that enters are pulled and pressed at most; it is to enter unbroken."""
 TELLING = 2
 """Slabs at the end of the window that tell how it is displaced."""
 PARKED = 3.0
@@ -179,9 +179,9 @@ class RockMass(RockAssembly):
         now = positions.copy()
         now[moved] = places[moved] + displacement
         longer = np.linalg.norm(now[i] - now[j], axis=1) - self.bond_lengths
-        made &= (new[i] & new[j]) | (abs(longer) <= MISFIT * (self.radii[i] + self.radii[j]))
-        longer = np.minimum(longer, MOST_TENSE * self.bond_lengths)
-        overlapping = packing.contacts(now, self.radii, -MISFIT * float(self.radii.min()))
+        made &= (new[i] & new[j]) | (abs(longer) <= MISFIT * self.height)
+        longer = np.clip(longer, -MOST_PRESSED * self.bond_lengths, MOST_TENSE * self.bond_lengths)
+        overlapping = packing.contacts(now, self.radii, -MISFIT * self.height)
         a, b = overlapping[new[overlapping[:, 0]] ^ new[overlapping[:, 1]]].T
         joined = np.isin(a * self.count + b, self.pairs[made] @ [self.count, 1])
         in_the_way = np.unique(np.where(new[a], b, a)[~joined])
