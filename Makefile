@@ -10,7 +10,7 @@ TO_LINT := python3-flake8
 
 .DEFAULT_GOAL := help
 .PHONY: help setup setup-sweep setup-test run test test-kernels validate bench fidelity campaigns campaign-wear \
-        campaign-uniaxial campaign-grains campaign-rocks campaign-steady campaign-granular \
+        campaign-uniaxial campaign-grains campaign-rocks campaign-steady campaign-worn campaign-granular \
         lint clean
 
 # $(call install,packages,modules): the missing packages, where there is apt-get; then each module must be found.
@@ -74,7 +74,7 @@ campaigns: setup-sweep ## the test tooth in four packings, two runs at a time; p
 	$(PYTHON) -m calibration.sweep yade_scripts/tooth_cycles.seeds.table yade_scripts/tooth_cycles.py \
 	  --out $(OUT)/campaign $(WHERE)
 
-campaign-wear: setup-sweep ## test tooth and ripper worn over many cycles, sharp and worn compared (four hours; resumes)
+campaign-wear: setup-sweep ## test tooth and ripper worn over many cycles (hours; resumes)
 	$(PYTHON) -m calibration.campaigns.wear $(OUT)/campaign-wear $(WHERE)
 
 campaign-uniaxial: setup-sweep ## the laboratory: bond laws, softening slopes, micro-parameters (hours; resumes)
@@ -88,6 +88,9 @@ campaign-rocks: setup-sweep ## what bond laws and rock properties do to a rock, 
 
 campaign-steady: setup-sweep ## what makes a steady cut what it is, one cause at a time (hours; resumes)
 	$(PYTHON) -m calibration.campaigns.steady_cut $(OUT)/campaign-steady $(WHERE)
+
+campaign-worn: setup-sweep ## a tool worn by its own cut, and how it cuts then (an hour and a half; resumes)
+	$(PYTHON) -m calibration.campaigns.sharp_and_worn $(OUT)/campaign-worn $(WHERE)
 
 campaign-granular: setup-sweep ## angle of repose and vibrated tube (an hour; resumes)
 	$(PYTHON) -m calibration.campaigns.granular $(OUT)/campaign-granular $(WHERE)

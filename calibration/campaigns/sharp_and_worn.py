@@ -1,13 +1,14 @@
-"""Sharp and worn: the effect of a tooth's wear on the cut.
+"""Sharp and worn: what a tool's wear does to its cut.
 
-    python3 -m calibration.campaigns.sharp_and_worn WORN_RUN DIR [SEED ...] [--jobs N | --scheduler ADDRESS]
+    python3 -m calibration.campaigns.sharp_and_worn DIR [--read] [--jobs N | --scheduler ADDRESS]
 
-WORN_RUN is the folder of a finished run of a wearing tooth (make campaign-wear writes some). Its outlines, new and at
-equal steps of its mass loss, become teeth without wear; each cuts the same fresh specimens at the same depth, one
-packing for each seed. Writes into DIR the outlines, the runs (finished ones are kept), sharp_and_worn.csv and .md, a
-figure and a page: cutting and thrust force, specific energy and chip size against the mass lost, beside the theories of
-Evans and Nishimatsu.
+A tool wears in a steady cut, fast. Its outlines, new and at equal steps of the area that it has lost, become tools that
+do not wear and cut fresh packings of the same rock. Finished runs are kept; --read starts none. Writes into DIR the
+outlines, sharp_and_worn.csv and .md, a figure and provenance.json: forces, peaks, chips and friction over the area
+lost, beside the peak by Evans' theory.
 """
+import csv
+import json
 import math
 import sys
 from pathlib import Path
@@ -16,42 +17,37 @@ import matplotlib
 import numpy as np
 
 from calibration import generated
-from calibration.campaigns.runs import RunFailed, Runs, placement
-from calibration.campaigns.two_tools import scatter
-from calibration.campaigns.uniaxial_tables import write_csv
+from calibration.campaigns import steady_cut
+from calibration.campaigns.runs import PLACEMENT, Runs, placement, wait_for
 from rockwear.kernels import cutting_theory
-from rockwear.kernels.bond_laws import BOND_LAWS
-from rockwear.kernels.checks import ParameterError, require
-from rockwear.kernels.fragments import pieces
-from rockwear.report import page, plots, shapes
+from rockwear.model.rock_file import find
+from rockwear.report import plots
 from rockwear.report.bodies import tool_loops
 from rockwear.report.folder import RunFolder
 
-SHAPES = 4
+SHAPES = 3
 """Number of outlines, the new one included."""
-SEEDS = 1, 2, 3, 4
-"""Several packings, because a single cut is known to a third only."""
-CUT = dict(cycles=0, start_up=0.012, wear_acceleration=0, heat="false", grading_factor=3)
-"""48 mm of cut at 4 m/s in graded rock; no wear, no heat."""
-SAME = "velocity depth_of_cut tool_kn tool_kt tool_mu contact_damping bond_law tool_radius_min tool_radius_max".split()
-"""Parameters of the cuts that are those of WORN_RUN, with those of its bond law."""
-STRENGTH = {"compressive_strength": 164e6, "tensile_strength": 30.4e6}
-"""Pa; of the rock of [Rojek 2003, 5.1] in the virtual laboratory (calibration/results/uniaxial.md)."""
-QUANTITIES = {"mean_cutting_force": ("mean cutting force", "N/m"), "peak_cutting_force": ("peak cutting force", "N/m"),
-              "mean_thrust_force": ("mean thrust force", "N/m"),
-              "specific_energy": ("specific energy", "J/m3"), "chip_size": ("median chip, by mass", "m")}
+SEEDS = 1, 2
+"""Packings that every outline cuts."""
+CUT = {**steady_cut.CUT, **steady_cut.ROCK, "wear_acceleration": 0, "report": "false"}
+RAKE = CUT.pop("rake")
+WORN = {**CUT, "rake": RAKE, "seed": 4, "heat": "true", "wear_acceleration": 500, "snapshot_period": 1e-4}
+"""The cut in which the tool wears."""
+QUANTITIES = {"force": "mean Fc, kN/m", "pressed": "mean Fn, kN/m", "peak": "mean peak Fc, kN/m",
+              "friction": "friction work, kN/m", "chip": "chip length / depth", "overbreak": "overbreak / depth"}
+"""{quantity of campaigns.steady_cut: heading}."""
 
 
 def stages(run):
-    """Snapshots of the new tooth and at equal steps of its mass loss. -> [(share of the mass lost, snapshot)]."""
+    """Snapshots of the new tool and at equal steps of the area that it has lost. -> [(m2, snapshot)]."""
     volumes = run.model["tool_volumes"]
-    lost = np.array([volumes[~run.snapshot(k)["alive"]].sum() for k in range(len(run.times))]) / volumes.sum()
+    lost = np.array([volumes[~run.snapshot(k)["alive"]].sum() for k in range(len(run.times))])
     chosen = [int(np.argmin(abs(lost - share * lost[-1]))) for share in np.linspace(0, 1, SHAPES)]
     return [(float(lost[k]), run.snapshot(k)) for k in chosen]
 
 
 def outline(run, shot):
-    """(k, 2) m: outline of the worn tooth, its lowest point at y = 0."""
+    """(k, 2) m: outline of the tool, its lowest point at y = 0."""
     polygon = max(tool_loops(run, shot), key=len)
     return polygon - [0.0, polygon[:, 1].min()]
 
@@ -65,134 +61,102 @@ def effective_rake(polygon, depth):
     return math.atan2(polygon[np.argmin(polygon[:, 1]), 0] - front, depth)
 
 
-def chip_size(run):
-    """Equivalent diameter (m) of a chip's area, the median by mass over all chips of more than one disc."""
-    shot, model = run.snapshot(-1), run.model
-    loose = shapes.chips(len(model["rock_radii"]), model["bonds"], shot["status"] == 0, model["rock_fixed"])
-    number = pieces(len(model["rock_radii"]), model["bonds"], shot["status"] == 0)
-    count = np.bincount(number[loose], minlength=number.max() + 1)
-    area = np.bincount(number[loose], math.pi * model["rock_radii"][loose]**2, number.max() + 1)
-    area = np.sort(area[count > 1])
-    if not len(area):
+def evans(rake, depth):
+    """kN/m, peak cutting force of a sharp tool by Evans' theory; nan beyond its range."""
+    rock = json.loads(Path(find(CUT["rock"])).read_text(encoding="utf-8"))
+    tension = rock["plane"]["measured"]["tensile_strength"]["mean"]
+    try:
+        return 1e-3 * cutting_theory.evans(tensile_strength=tension, depth=depth, rake=rake)
+    except ValueError:
         return math.nan
-    return 2 * math.sqrt(area[np.searchsorted(np.cumsum(area), 0.5 * area.sum())] / math.pi)
 
 
-def measure(run):
-    """{quantity: value} of one cut."""
-    return {**{name: run.result(name) for name in QUANTITIES if name != "chip_size"}, "chip_size": chip_size(run)}
-
-
-def theory(rake, run):
-    """{name: cutting force, N/m} of the classical theories, nan beyond their range."""
-    friction = math.atan(run.parameter("tool_mu", 0.3))
-    cohesion, internal = cutting_theory.mohr_coulomb(**STRENGTH)
-    depth = run.parameter("depth_of_cut", math.nan)
-    found = {"Evans": lambda: cutting_theory.evans(
-                 tensile_strength=STRENGTH["tensile_strength"], depth=depth, rake=rake),
-             "Nishimatsu": lambda: cutting_theory.nishimatsu(
-                 shear_strength=cohesion, internal_friction=internal, depth=depth, rake=rake,
-                 friction_angle=friction)[0]}
-
-    def value(force):
-        try:
-            return force()
-        except ValueError:
-            return math.nan
-    return {name: value(force) for name, force in found.items()}
-
-
-def figure(teeth, rows):
-    """Outlines, and the four quantities against the mass lost."""
+def figure(tools):
+    """Outlines, and four quantities against the area lost."""
     drawn, panels = plots.canvas(12, 7.2, 2, 3)
-    colours = matplotlib.colormaps["plasma"](np.linspace(0, 0.85, len(teeth)))
-    for tooth, colour in zip(teeth, colours):
-        closed = np.vstack([tooth["outline"], tooth["outline"][:1]])
-        panels[0].plot(*plots.MM * closed.T, color=colour, label=f"{100 * tooth['lost']:.1f} % lost")
-    low = plots.MM * min(tooth["outline"][:, 1].min() for tooth in teeth)
-    tip = plots.MM * teeth[0]["outline"][np.argmin(teeth[0]["outline"][:, 1]), 0]
-    plots.frame(panels[0], (tip - 32, tip + 12, low - 2, low + 32), "outlines")
+    colours = matplotlib.colormaps["plasma"](np.linspace(0, 0.85, len(tools)))
+    for tool, colour in zip(tools, colours):
+        closed = np.vstack([tool["outline"], tool["outline"][:1]])
+        panels[0].plot(*plots.MM * closed.T, color=colour, label=f"{1e6 * tool['lost']:.1f} mm² lost")
+    tip = tools[0]["outline"][np.argmin(tools[0]["outline"][:, 1]), 0]
+    depth = CUT["depth_of_cut"]
+    plots.frame(panels[0], plots.MM * np.array([tip - 1.5 * depth, tip + 0.7 * depth, -0.2 * depth, 2.0 * depth]),
+                "outlines")
     panels[0].legend(fontsize=8)
-    for axes, (name, (label, unit)) in zip(panels[1:], QUANTITIES.items()):
-        shown, factor, _ = page.SHOWN.get(unit, (unit, 1.0, 0.0))
-        lost = 100 * np.array([row["lost"] for row in rows])
-        values = factor * np.array([row[name] for row in rows])
-        axes.plot(lost, values, "o", color="#c8a15a", markersize=4, label="one packing")
-        middle, error = np.array([scatter(values[lost == x]) for x in np.unique(lost)]).T
-        axes.errorbar(np.unique(lost), middle, error, color="#444444", capsize=3, label="mean, its standard error")
-        axes.set(title=label, xlabel="mass lost / %", ylabel=shown, ylim=(0, 1.1 * np.nanmax(values)))
-        if name == "peak_cutting_force":
-            # The theories give the force at which a chip breaks off; for a blunt tool they are far from the peak.
-            for theory_name, style in (("Evans", "s:"), ("Nishimatsu", "^--")):
-                axes.plot([100 * tooth["lost"] for tooth in teeth], [factor * tooth[theory_name] for tooth in teeth],
-                          style, markersize=4, color="#2c6e91", label=theory_name)
-            highest = np.nanmax([values.max(), *(factor * tooth[theory_name] for tooth in teeth
-                                                 for theory_name in ("Evans", "Nishimatsu"))])
-            axes.set(yscale="log", ylim=(0.3 * np.nanmin(values), 2 * highest))
+    for axes, (name, heading) in zip(panels[1:], QUANTITIES.items()):
+        lost = 1e6 * np.array([tool["lost"] for tool in tools])
+        for k, tool in enumerate(tools):
+            each = [one[name].value for one in tool["each"]]
+            axes.plot([lost[k]] * len(each), each, "o", color="#c8a15a", markersize=4,
+                      label="one packing" if not k else None)
+        values, errors = np.array([tool[name] for tool in tools]).T
+        axes.errorbar(lost, values, errors, color="#444444", capsize=3, label="mean, its standard error")
+        axes.set(title=heading, xlabel="area lost / mm²", ylim=(0, None))
+        if name == "peak":
+            axes.plot(lost, [tool["evans"] for tool in tools], "s:", markersize=4, color="#2c6e91", label="Evans")
             axes.legend(fontsize=8)
     return drawn
 
 
-def main(worn_run, folder, seeds=SEEDS, **where):
-    """Run the missing cuts, and write tables, figure and page. where: options of Runs."""
-    folder, run = Path(folder), RunFolder(worn_run)
-    require({"tool_volumes", "rock_radii"} <= set(run.model) and len(run.times), "WORN_RUN", str(worn_run),
-            "the folder of a cut in the plane with a tool of particles")
-    (folder / "outlines").mkdir(parents=True, exist_ok=True)
-    law = [parameter.name for parameter in BOND_LAWS[run.parameters["bond_law"]].parameters]
-    common = {name: run.parameters[name] for name in [*SAME, *law] if name in run.parameters}
-    teeth = []
-    for number, (lost, shot) in enumerate(stages(run)):
-        polygon = outline(run, shot)
-        path = folder / "outlines" / f"tooth_{number}.csv"
-        np.savetxt(path, polygon, delimiter=",", header="x [m],y [m]", comments="")
-        rake = effective_rake(polygon, run.parameter("depth_of_cut", math.nan))
-        teeth.append({"lost": lost, "outline": polygon, "path": path, "rake": rake, **theory(rake, run)})
-    with Runs(folder, keep=True, **where) as runs:
-        cuts = {(number, seed): runs.start(f"tooth_{number}-{seed}", "yade_scripts/tooth_cycles.py", seed=seed,
-                                           outline=tooth["path"], **common, **CUT)
-                for seed in seeds for number, tooth in enumerate(teeth)}
-        rows = [{"tooth": number, "lost": teeth[number]["lost"], "seed": seed, **measure(future.result())}
-                for (number, seed), future in cuts.items()]
-    write_csv(folder / "sharp_and_worn.csv", rows)
-    write_page(folder, teeth, rows)
-
-
-def write_page(folder, teeth, rows):
-    """sharp_and_worn.png, the table as sharp_and_worn.md, and report.html with both."""
+def write(folder, tools):
+    """The figure, and the tables as sharp_and_worn.md and .csv. -> the text of the first."""
     with matplotlib.rc_context(plots.STYLE):
-        drawn = figure(teeth, rows)
-        path = folder / "sharp_and_worn.png"
-        drawn.savefig(path)
-    cuts = []
-    for number, tooth in enumerate(teeth):
-        of = [row for row in rows if row["tooth"] == number]
-        cells = []
-        for name, (_, unit) in QUANTITIES.items():
-            middle, error = scatter(np.array([row[name] for row in of]))
-            cells.append(f"{page.quantity(middle, unit)} ± {page.percent(error, middle)}")
-        cuts.append([f"{100 * tooth['lost']:.1f} % lost", f"{math.degrees(tooth['rake']):.0f}°", *cells,
-                     *(page.quantity(tooth[name], "N/m") for name in ("Evans", "Nishimatsu"))])
-    header = ("tooth", "effective rake", *(label for label, _ in QUANTITIES.values()), "Evans", "Nishimatsu")
-    section = page.Section(
-        "Effect of wear on the cut", "The same specimens cut at the same depth by the new tooth and by its worn "
-        "outlines; ± is the standard error of the mean over packings. The theories give the force at which a chip "
-        "breaks off, to be compared with the peak. They take the rake of the line from the lowest point to the front "
-        "at the rock's surface, and the strengths of the virtual laboratory.",
-        [page.image(path), page.table(cuts, header)])
-    text = page.document("sharp and worn", f"{len(rows)} cuts", [section])
-    (folder / "report.html").write_text(text, encoding="utf-8")
-    generated.write_page(folder / "sharp_and_worn.md", generated.table(header, cuts))
-    generated.record(path, folder / "sharp_and_worn.csv", folder / "report.html")
+        figure(tools).savefig(folder / "sharp_and_worn.png")
+    rows = [[f"{1e6 * tool['lost']:.2f} mm²", f"{math.degrees(tool['rake']):.0f}°", len(tool["each"]),
+             *(steady_cut.shown(tool[name]) for name in QUANTITIES), f"{tool['evans']:.0f} kN/m"] for tool in tools]
+    with open(folder / "sharp_and_worn.csv", "w", encoding="utf-8", newline="") as file:
+        csv.writer(file).writerows([["lost [m2]", "packing", *QUANTITIES], *(
+            [tool["lost"], seed, *(one[name].value for name in QUANTITIES)]
+            for tool in tools for seed, one in zip(SEEDS, tool["each"]))])
+    generated.record(folder / "sharp_and_worn.png", folder / "sharp_and_worn.csv")
+    return generated.write_page(folder / "sharp_and_worn.md", [
+        "Means ± standard errors of the cuts' own records, from three depths of cut on. The effective rake is that of "
+        "the line from the lowest point to the front at the rock's surface; Evans takes it, and the rock's strength in "
+        "tension, for the peak of a sharp tool.", "",
+        *generated.table(["area lost", "effective rake", "packings", *QUANTITIES.values(), "Evans"], rows)])
+
+
+def shapes(folder):
+    """[{lost, outline, path, rake, evans}] of the worn tool's stages; writes the outlines."""
+    run, depth, found = RunFolder(folder / "worn"), CUT["depth_of_cut"], []
+    (folder / "outlines").mkdir(exist_ok=True)
+    for number, (lost, shot) in enumerate(stages(run)):
+        polygon, path = outline(run, shot), folder / "outlines" / f"tool_{number}.csv"
+        np.savetxt(path, polygon, delimiter=",", header="x [m],y [m]", comments="")
+        rake = effective_rake(polygon, depth)
+        found.append({"lost": lost, "outline": polygon, "path": path, "rake": rake, "evans": evans(rake, depth)})
+    return found
+
+
+def start(folder, **where):
+    """Run what is missing; where: options of Runs. -> 1 where a run failed, else 0."""
+    with Runs(folder, keep=True, **where) as runs:
+        if wait_for({"worn": runs.start("worn", steady_cut.SCRIPT, **WORN)}, lambda name, run: name):
+            return 1
+        jobs = {(number, seed): runs.start(f"tool_{number}-{seed}", steady_cut.SCRIPT,
+                                           **{**CUT, "outline": tool["path"], "seed": seed})
+                for seed in SEEDS for number, tool in enumerate(shapes(folder))}
+        return wait_for(jobs, lambda key, run: run.path.name)
+
+
+def main(folder, read=False, **where):
+    """Run what is missing unless they are only read, and write all of what is there. -> exit code."""
+    folder.mkdir(parents=True, exist_ok=True)
+    failed, tools = 0 if read else start(folder, **where), []
+    for number, tool in enumerate(shapes(folder) if not failed else ()):
+        places = [folder / f"tool_{number}-{seed}" for seed in SEEDS]
+        each = [steady_cut.of_run(RunFolder(place)) for place in places if (place / "summary.json").exists()]
+        if each:
+            tools.append({**tool, "each": each, **{name: steady_cut.over_packings([one[name] for one in each])
+                                                   for name in QUANTITIES}})
+    if tools:
+        print(write(folder, tools))
+    return failed
 
 
 if __name__ == "__main__":
-    matplotlib.use("Agg")
     where, words = placement(sys.argv[1:])
-    if len(words) < 2:
-        sys.exit(__doc__)
-    try:
-        main(words[0], words[1], tuple(map(int, words[2:])) or SEEDS, **where)
-    except (OSError, ParameterError, RunFailed) as error:
-        print(f"error: {error}", file=sys.stderr)
-        sys.exit(1 if isinstance(error, RunFailed) else 2)
+    if not words or set(words[1:]) - {"--read"}:
+        print(f"usage: python3 -m calibration.campaigns.sharp_and_worn DIR [--read] {PLACEMENT}", file=sys.stderr)
+        sys.exit(2)
+    sys.exit(main(Path(words[0]), "--read" in words, **where))

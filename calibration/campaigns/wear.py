@@ -3,9 +3,8 @@
     python3 -m calibration.campaigns.wear DIR [CASE ...] [--jobs N | --scheduler ADDRESS]         (make campaign-wear)
 
 All cases, or those named; two runs at a time, or N, or as many as a dask scheduler's workers take; a folder a run. An
-interrupted campaign resumes: finished runs are kept, the others continue from their checkpoints. The last part cuts
-fresh rock with the worn outlines of the ripper (calibration.campaigns.sharp_and_worn). Writes report.html, wear.md
-(tables), figures and provenance.json into DIR.
+interrupted campaign resumes: finished runs are kept, the others continue from their checkpoints. Writes report.html,
+wear.md (tables), figures and provenance.json into DIR.
 """
 import sys
 from pathlib import Path
@@ -14,7 +13,6 @@ import matplotlib
 import numpy as np
 
 from calibration import generated
-from calibration.campaigns import sharp_and_worn
 from calibration.campaigns.runs import RunFailed, Runs, placement
 from rockwear.kernels.wear_statistics import difference, middles
 from rockwear.report import page, plots, published
@@ -41,8 +39,6 @@ CASES = {
 SAME_WORK = {"a hundredth": ("test tooth, 2.5e4", "test tooth, 5e4", "test tooth, 1e5"),
              "a quarter": ("test tooth, 2e5", "test tooth, 4e5", "test tooth, 8e5", "test tooth, 1.6e6")}
 """First rule of [Rocky]: wear twice as fast and half as long, repeatedly, until the same part is worn off."""
-WORN = "ripper, 2e5"
-"""The run whose outlines cut fresh rock."""
 COARSE = dict(grading_factor=3)
 """Rock graded threefold below the reach of the cut: half the time."""
 PUBLISHED = 0.203, 100 * published.value("m-9.2-loss")
@@ -180,11 +176,6 @@ def main(folder, *names, **where):
         pieces = [page.image(run.path / "figures" / f"{figure}.png") for figure in ("shape", "wear", "trust")
                   if (run.path / "figures" / f"{figure}.png").exists()]
         sections.append(page.Section(name, "", pieces))
-    if WORN in found:
-        sharp_and_worn.main(found[WORN].path, folder / "sharp_and_worn", **where)
-        sections.append(page.Section("Sharp and worn", f"The same rock cut by the new and the worn outlines of {WORN}; "
-                                     "see sharp_and_worn/report.html.",
-                                     [page.image(folder / "sharp_and_worn/sharp_and_worn.png")]))
     sections += [page.Section(name, f"FAILED: {words}", [" "]) for name, words in failed.items()]
     (folder / "report.html").write_text(page.document("wear", f"{len(found)} runs, {len(failed)} failed", sections),
                                         encoding="utf-8")

@@ -24,8 +24,9 @@ def started():
     for section in validation.SECTIONS:
         yield from section.runs.values()
     yield from ((script, {**wear.COARSE, **values}) for script, values in wear.CASES.values())
-    for values in [*bench.jobs().values(), sharp_and_worn.CUT, particle_size.CUT]:
+    for values in [*bench.jobs().values(), particle_size.CUT]:
         yield wear.TOOTH, values
+    yield steady_cut.SCRIPT, sharp_and_worn.WORN
     for law, targets in (("brittle", {}), ("coulomb", {}), ("cohesive", {"fracture_toughness": 0.9e6})):
         yield from runs_of_a_fit(law, **targets).started[::3]
     for cases, common, _ in uniaxial.CAMPAIGNS.values():

@@ -1,0 +1,81 @@
+"""make campaign-worn in miniature: a tool wears, its outlines cut fresh rock, runs and tables are kept."""
+import csv
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from calibration.campaigns import sharp_and_worn
+from calibration.campaigns.runs import finished
+from rockwear.kernels.polygon import area
+from rockwear.report.folder import RunFolder
+
+from tests.running import ROOT
+
+TINY = {**sharp_and_worn.CUT, "discs_per_depth": 4, "cut_length": 0.02, "snapshot_period": 5e-4}
+SEEDS = 1, 2
+
+
+@pytest.fixture(scope="module")
+def campaign(tmp_path_factory):
+    """-> (folder of the finished campaign, a function that runs it again)."""
+    folder = tmp_path_factory.mktemp("campaign")
+
+    def run():
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(sharp_and_worn, "SHAPES", 2)
+            patch.setattr(sharp_and_worn, "CUT", TINY)
+            patch.setattr(sharp_and_worn, "WORN", {**TINY, "rake": 5.0, "wear_acceleration": 2e3})
+            assert sharp_and_worn.main(folder) == 0
+    run()
+    return folder, run
+
+
+def test_worn_shapes_cut_fresh_rock(campaign):
+    folder = campaign[0]
+    with open(folder / "sharp_and_worn.csv", encoding="utf-8") as file:
+        rows = [{name: float(value) for name, value in row.items()} for row in csv.DictReader(file)]
+    assert len(rows) == 2 * len(SEEDS) and all(row["force"] > 0 for row in rows)
+    new, worn = (np.loadtxt(folder / f"outlines/tool_{n}.csv", delimiter=",", skiprows=1) for n in (0, 1))
+    assert new[:, 1].min() == 0 == worn[:, 1].min()
+    lost = max(row["lost [m2]"] for row in rows)
+    assert 0.02 * area(new) < lost and area(worn) == pytest.approx(area(new) - lost, rel=0.02)
+    for seed in SEEDS:
+        cuts = [RunFolder(folder / f"tool_{n}-{seed}") for n in (0, 1)]
+        assert np.array_equal(*(cut.model["rock_radii"] for cut in cuts))
+        assert all(cut.result("worn_volume") == 0 for cut in cuts)
+    text = (folder / "sharp_and_worn.md").read_text(encoding="utf-8")
+    assert text.count("mm² |") == 2 and (folder / "sharp_and_worn.png").exists()
+
+
+def test_finished_runs_stay_and_another_shape_is_cut_again(campaign):
+    folder, run = campaign
+    written = {path: path.stat().st_mtime_ns for path in folder.glob("**/summary.json")}
+    assert len(written) == 1 + 2 * len(SEEDS)
+    run()
+    assert {path: path.stat().st_mtime_ns for path in folder.glob("**/summary.json")} == written
+    outline, cut = folder / "outlines/tool_1.csv", folder / f"tool_1-{SEEDS[0]}"
+    assert finished(cut, {"outline": outline})
+    outline.write_text(outline.read_text(encoding="utf-8").replace("\n", "\n ", 2), encoding="utf-8")
+    assert not finished(cut, {"outline": outline})
+
+
+@pytest.mark.parametrize("rake", [-30, 0, 20])
+def test_the_rake_of_a_straight_front_is_its_own(rake):
+    slope = np.tan(np.radians(rake))
+    tool = np.array([[0.0, 0.0], [-0.03 * slope, 0.03], [-0.05, 0.03], [-0.05, 0.01]])
+    assert np.degrees(sharp_and_worn.effective_rake(tool, 0.015)) == pytest.approx(rake)
+
+
+def test_the_theory_takes_the_strength_of_the_rock():
+    sharp, blunt = (sharp_and_worn.evans(np.radians(rake), 5e-3) for rake in (0, -20))
+    # 2 σt d sin(45°) / (1 - sin(45°)), 3.83 MPa in tension.
+    assert sharp == pytest.approx(2 * 3.827e3 * 5e-3 * np.sin(np.pi / 4) / (1 - np.sin(np.pi / 4)), rel=1e-3)
+    assert blunt > sharp
+
+
+def test_a_folder_is_asked_for_in_one_line():
+    command = [sys.executable, "-m", "calibration.campaigns.sharp_and_worn"]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, encoding="utf-8")
+    assert done.returncode == 2 and done.stderr.startswith("usage: ") and done.stderr.count("\n") == 1
