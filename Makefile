@@ -44,13 +44,10 @@ setup-sweep: setup ## what many runs at once need too: fits, campaigns and sweep
 setup-test: setup
 	$(call install,$(TO_TEST),pytest xdist distributed)
 
-# Wear is accelerated so that the tip wears away within a cut of 30 mm instead of kilometres. Fine discs, eight in the
-# depth of cut, lie where the tool breaks rock.
+# Wear is accelerated so that the tip wears away within a cut of 30 mm instead of kilometres.
 run: setup ## cut a sandstone steadily, the tip wearing; report in out/steady_cut/report.html
-	yade -n -x -j1 yade_scripts/steady_cut.py --rock interlocked_sandstone --cut_length 0.03 --velocity 8 \
-	  --radius_min 2.5e-4 --radius_max 3.75e-4 --grading_factor 3 --fine_depth 0.011 \
-	  --window_height 0.04 --window_ahead 0.05 --tool_radius_min 2e-4 --tool_radius_max 2.4e-4 \
-	  --heat true --wear_acceleration 5e3 --out $(OUT)/steady_cut
+	yade -n -x -j1 yade_scripts/steady_cut.py --rock interlocked_sandstone --discs_per_depth 16 \
+	  --cut_length 0.03 --velocity 8 --heat true --wear_acceleration 5e3 --out $(OUT)/steady_cut
 
 test: setup-test ## all tests
 	$(PYTHON) -m pytest -n 2 --dist loadscope tests

@@ -20,11 +20,9 @@ from rockwear.run import parameters, servers
 from rockwear.run.main import COMMON
 from rockwear.scenes import steady_cut
 
-FINE = dict(
-    rock="interlocked_sandstone", velocity=8.0, cut_length=0.03, radius_min=2.5e-4, radius_max=3.75e-4,
-    grading_factor=3.0, fine_depth=0.011, window_behind=0.02, window_ahead=0.036, window_height=0.04, depth_of_cut=5e-3,
-    rake=-5.0, clearance=5.0, tip_radius=5e-4, tooth_height=0.02, tooth_width=0.008, tool_radius_min=2e-4,
-    tool_radius_max=2.4e-4, tool_kn=2e10, tool_kt=2e10, contact_damping=0.2, heat=True, wear_acceleration=5e3)
+CUT = dict(rock="interlocked_sandstone", discs_per_depth=16, velocity=8.0, cut_length=0.03, rake=-5.0, clearance=5.0,
+           tip_radius=5e-4, tool_kn=1e10, tool_kt=1e10, contact_damping=0.2, heat=True, wear_acceleration=5e3)
+"""That of `make run`, with the defaults of its script."""
 BEGIN = 0.01
 """m."""
 STEPS, SAMPLED = 1000, 6000
@@ -63,7 +61,7 @@ def sampled(scene, state, folder, change=lambda scene: None):
 def main():
     """Measure and write."""
     servers.close()
-    values = parameters.read([*steady_cut.groups(**FINE), COMMON], sys.argv[1:])
+    values = parameters.read([*steady_cut.groups(**CUT), COMMON], sys.argv[1:])
     folder = Path(values["out"])
     folder.mkdir(parents=True, exist_ok=True)
     scene = steady_cut.make(values)

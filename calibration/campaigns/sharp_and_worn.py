@@ -31,7 +31,7 @@ SEEDS = 1, 2
 """Packings that every outline cuts."""
 CUT = {**steady_cut.CUT, **steady_cut.ROCK, "wear_acceleration": 0, "report": "false"}
 RAKE = CUT.pop("rake")
-WORN = {**CUT, "rake": RAKE, "seed": 4, "heat": "true", "wear_acceleration": 500, "snapshot_period": 1e-4}
+WORN = {**CUT, "rake": RAKE, "seed": 4, "heat": "true", "wear_acceleration": 3000, "snapshot_period": 1e-4}
 """The cut in which the tool wears."""
 QUANTITIES = {"force": "mean Fc, kN/m", "pressed": "mean Fn, kN/m", "peak": "mean peak Fc, kN/m",
               "friction": "friction work, kN/m", "chip": "chip length / depth", "overbreak": "overbreak / depth"}

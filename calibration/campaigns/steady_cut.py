@@ -156,15 +156,21 @@ def of_run(run):
     chip = chip_length(particles=particles[late], area=area[late], length=length[late])
     overbreak = Measured(groove["overbreak"][0], groove["overbreak_standard_error"][0])
     energy, (work, mode) = run.balances["energy"], run.table("cracks.csv", "energy", "mode")
-    loaded = steady_record.integral(distance, cutting > LOAD * peaks.mean().value)
     return {"force": scaled(mean, 1e-3), "energy": scaled(mean, 1 / depth), "peak": scaled(peaks.mean(), 1e-3),
             "peaks": steady_record.quotient(peaks.mean(), mean), "overbreak": scaled(overbreak, 1 / depth),
             "chip": scaled(chip, 1 / depth), "thrust": steady_record.ratio(distance, pressed, total, begin),
             "pressed": scaled(steady_record.mean(distance, pressed, begin), 1e-3),
             "friction": scaled(steady_record.mean(distance, friction, begin), 1e-3),
-            "loaded": steady_record.mean(distance, loaded, begin),
+            "loaded": under_load(distance, cutting, peaks.mean().value, begin),
             "bonds": Measured(energy["bond_breaking"] / energy["tool_work"], math.nan),
             "tension": Measured(float(work[mode == IN_TENSION].sum()) / energy["tool_work"], math.nan)}
+
+
+def under_load(distance, cutting, peak, begin):
+    """Measured part of the way on which the cutting force is above LOAD of the mean peak; unknown without peaks."""
+    if math.isnan(peak):
+        return steady_record.UNKNOWN
+    return steady_record.mean(distance, steady_record.integral(distance, cutting > LOAD * peak), begin)
 
 
 def scaled(measured, factor):

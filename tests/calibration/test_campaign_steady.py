@@ -46,6 +46,13 @@ def test_what_comes_before_the_end_of_the_slope_does_not_count(tmp_path):
     assert found["bonds"].value == 0.5 and found["tension"].value == 0.1
 
 
+def test_the_way_under_load_is_not_known_without_peaks():
+    distance = np.linspace(0, 0.06, 601)
+    half = np.where(distance > 0.03, FORCE, 0.0)
+    assert steady_cut.under_load(distance, half, FORCE, 0.0).value == pytest.approx(0.5, abs=0.01)
+    assert math.isnan(steady_cut.under_load(distance, half, math.nan, 0.0).value)
+
+
 def test_specific_energy_is_over_the_strength_of_the_same_rock(tmp_path):
     write_run(tmp_path / "cut/base-1")
     for seed, ucs in ((1, 40e6), (2, 60e6)):
@@ -70,6 +77,24 @@ def test_cuts_are_judged_at_their_own_depth_and_strength(tmp_path):
     assert judged["base", "specific energy"][::3] == ["5 to 20 MJ/m³", "inside"]
     assert ("depth 10 mm", "mean cutting force") not in judged
     assert judged["depth 10 mm", "overbreak"][3] == "inside"
+
+
+def test_what_cuts_tell_together():
+    def row(force, error, thrust=40.0):
+        return {"force": Measured(force, error), "pressed": Measured(thrust, 3.0), "ucs": Measured(50.0, 2.0)}
+    found = {"base": row(40.0, 4.0), "depth 2.5 mm": row(20.0, 2.0), "depth 10 mm": row(80.0, 8.0),
+             "rake 10°": row(40.0 - 0.6 * 15, 4.0), "rake -15°": row(40.0 + 0.6 * 10, 4.0),
+             "wear flat 1 mm": row(60.0, 4.0, 80.0), "wear flat 2 mm": row(40.0, math.nan, 70.0)}
+    rows = {(case, words.split(",")[0]): (ours, verdict)
+            for case, words, _, _, ours, verdict in steady_cut.relations(found)}
+    assert rows["", "mean cutting force over depth"] == ("1 ± 0.1", "inside")
+    # -0.6 kN/m per degree.
+    ours, verdict = rows["", "change of the mean cutting force per rad of rake"]
+    assert ours.startswith("-3.44e+04 ±") and verdict == "inside"
+    # 40 kN/m more over 50 MPa times 1 mm; half as much in the cutting force.
+    assert rows["wear flat 1 mm", "thrust that a wear flat of 1 or 2 mm adds"] == ("0.8 ± 0.085", "inside")
+    assert rows["wear flat 1 mm", "cutting force that a wear flat adds"] == ("0.5 ± 0.15", "inside")
+    assert not steady_cut.relations({"depth 10 mm": row(80.0, 8.0)})
 
 
 def write(folder, results, **entries):
