@@ -260,8 +260,8 @@ def relations(found):
             more = {what: difference(found[name][what], known[what]) for what in ("force", "pressed")}
             ours["flat_thrust", name] = scaled(more["pressed"], 1e-3 / (known["ucs"].value * change["wear_flat"]))
             part = more["force"].value / more["pressed"].value
-            ours["flat_cutting_over_thrust", name] = Measured(part, abs(part) * math.hypot(
-                *(one.standard_error / one.value for one in more.values())))
+            ours["flat_cutting_over_thrust", name] = Measured(part, math.hypot(
+                more["force"].standard_error, part * more["pressed"].standard_error) / abs(more["pressed"].value))
     for one in RELATIONS:
         for (observable, case), measured in ours.items():
             if one.observable == observable:
