@@ -5,7 +5,7 @@
 N runs at a time (2), or as many as a dask scheduler's workers take; a folder a run; finished runs are not repeated, so
 that an interrupted campaign resumes. --read starts no run and evaluates those that exist. Each rock is also crushed in
 the laboratory, and the base pulled, in the same packings. Writes into DIR steady_cut.md (tables), steady_cut.csv,
-figures of the base and of the finest rock (steady_cut*.png), and provenance.json.
+figures of the base, of the finest discs and over their number (steady_cut*.png), and provenance.json.
 """
 import csv
 import math
@@ -19,7 +19,8 @@ from calibration import generated
 from calibration.campaigns.runs import PLACEMENT, Runs, placement, wait_for
 from rockwear.kernels import steady_record
 from rockwear.kernels.cut_sizes import cut_sizes
-from rockwear.kernels.cutting_envelope import RELATIONS, expected, exponent
+from rockwear.kernels.cutting_envelope import (
+    ENERGY_TARGET, OVERBREAK_TARGET, PEAKS_TARGET, RELATIONS, expected, exponent)
 from rockwear.kernels.fragments import chip_length
 from rockwear.kernels.groove import groove_results
 from rockwear.kernels.steady_record import Measured
@@ -283,6 +284,24 @@ def slope(x, values, errors):
     return Measured(float(np.sum(weight * x * values) / spread), float(spread**-0.5))
 
 
+def resolution(found):
+    """Figure: what the number of discs in the depth of cut changes, and what it costs."""
+    discs = {case: {**CUT, **ROCKS[case]}["discs_per_depth"] for case in (EIGHT, BASE, FINEST) if case in found}
+    drawn, panels = plots.canvas(13, 3.4, 1, 4)
+    targets = {"energy": ENERGY_TARGET, "peaks": PEAKS_TARGET, "overbreak": OVERBREAK_TARGET, "thrust": None}
+    for axes, (name, target) in zip(panels, targets.items()):
+        values, errors = np.array([found[case][name] for case in discs]).T
+        if target:
+            axes.axhspan(*target, color="#dfe8d8", label="aimed at")
+            axes.legend(fontsize=8)
+        axes.errorbar(list(discs.values()), values, np.nan_to_num(errors), fmt="o-", color="#444444", capsize=3)
+        axes.set(xscale="log", ylim=(0, None), title=next(words for words, of in COLUMNS.items() if of == name))
+        axes.set_xticks(list(discs.values()), [f"{count} discs\n{found[case]['cost']:.0f} min/m"
+                                               for case, count in discs.items()])
+        axes.minorticks_off()
+    return drawn
+
+
 def write(folder):
     """Tables and figures of all runs that exist. -> the tables, in Markdown."""
     found = {case: row for case in CASES if (row := of_case(folder, case))}
@@ -302,6 +321,10 @@ def write(folder):
                                     ("_forces", steady.force_figure(run))):
                     files.append(folder / f"{name}{end}.png")
                     figure.savefig(files[-1])
+    if {BASE, EIGHT} <= set(found):
+        with matplotlib.rc_context(plots.STYLE):
+            files.append(folder / "steady_cut_resolution.png")
+            resolution(found).savefig(files[-1])
     with open(files[0], "w", encoding="utf-8", newline="") as file:
         csv.writer(file).writerows([["case", "quantity", "mean", "standard error"],
                                     *([case, name, *value] for case, row in found.items()

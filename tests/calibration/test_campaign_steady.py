@@ -97,6 +97,16 @@ def test_what_cuts_tell_together():
     assert not steady_cut.relations({"depth 10 mm": row(80.0, 8.0)})
 
 
+def test_the_figure_over_the_discs_has_what_is_there():
+    row = {name: Measured(value, error) for name, value, error in (
+        ("energy", 0.12, 0.02), ("peaks", 5.0, math.nan), ("overbreak", 0.5, 0.1), ("thrust", 0.7, 0.1))}
+    found = {"base": {**row, "cost": 120.0}, "eight discs": {**row, "energy": Measured(0.1, 0.03), "cost": 20.0}}
+    energy, *others = steady_cut.resolution(found).axes
+    points = energy.lines[0].get_xydata()
+    assert points.tolist() == [[8, 0.1], [16, 0.12]] and len(others) == 3
+    assert [one.get_text() for one in energy.get_xticklabels()] == ["8 discs\n20 min/m", "16 discs\n120 min/m"]
+
+
 def write(folder, results, **entries):
     """A made-up summary."""
     folder.mkdir(parents=True)
