@@ -101,6 +101,20 @@ def test_rock_enters_as_the_displacement_of_the_rock_that_is_there_goes_on():
     assert mass.bond_lengths[made] + longer[made] == pytest.approx(apart, abs=1e-12)
 
 
+def test_rock_that_gives_much_is_followed_and_loose_particles_are_not():
+    mass = fresh()
+    moved = mass.advance()
+    pressed = mass.height * np.column_stack([2e-3 * (1 - mass.places[:, 1] / mass.height), np.full(mass.count, 1e-3)])
+    loose = np.random.default_rng(1).choice(np.setdiff1d(np.arange(mass.count), moved), mass.count // 12, replace=False)
+    loose = loose[~mass.anchored[loose]]
+    off = np.zeros((mass.count, 2))
+    off[loose, 0] = 1e-3 * mass.height * (-1.0)**np.arange(len(loose))
+    displacement, made, _, in_the_way = mass.fit(moved, mass.places + pressed + off, mass.bonded)
+    assert displacement == pytest.approx(pressed[moved], abs=1e-12)
+    new, free = np.isin(mass.pairs, moved).any(axis=1), np.isin(mass.pairs, loose).any(axis=1)
+    assert (made == (mass.bonded & new & ~free)).all() and set(in_the_way) <= set(loose)
+
+
 def test_a_chip_that_lies_where_rock_enters_is_put_aside():
     mass = fresh()
     places = mass.places.copy()
