@@ -41,7 +41,7 @@ IN_TENSION = 1
 ROCK = dict(rock="interlocked_sandstone")
 CUT = dict(depth_of_cut=5e-3, discs_per_depth=16, rake=-5.0, velocity=8.0, snapshot_period=5e-4, cut_length=0.06)
 LONG, SHORT = 0.115, 0.03
-"""m of way in the base, which are twenty depths of cut that count, and with small discs."""
+"""m of way in the first packing of the base, which are twenty depths of cut that count, and with small discs."""
 BOX = dict(width=0.02, height=0.01)
 """Of the laboratory, m; loaded along its length; as much larger or smaller as the discs are."""
 SPEEDS = {"compression": 0.04, "tension": 0.02}
@@ -101,7 +101,7 @@ def rock_of(case):
 
 def cut_of(case, seed):
     """Parameters of a cut."""
-    length = {BASE: dict(cut_length=LONG), FINEST: dict(cut_length=SHORT)}.get(case, {})
+    length = {(BASE, SEEDS[0]): dict(cut_length=LONG), (FINEST, seed): dict(cut_length=SHORT)}.get((case, seed), {})
     return {**CUT, **length, **ROCKS[rock_of(case)], **CUTS.get(case, {}), "seed": seed, "report": "false"}
 
 
