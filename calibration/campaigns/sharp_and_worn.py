@@ -2,10 +2,10 @@
 
     python3 -m calibration.campaigns.sharp_and_worn DIR [--read] [--jobs N | --scheduler ADDRESS]
 
-A tool wears in a steady cut, fast. Its outlines, new and at equal steps of the area that it has lost, become tools that
-do not wear and cut fresh packings of the same rock. Finished runs are kept; --read starts none. Writes into DIR the
-outlines, sharp_and_worn.csv and .md, a figure and provenance.json: forces, peaks, chips and friction over the area
-lost, beside the peak by Evans' theory.
+A tool wears in a steady cut, fast. Its outlines at equal steps of the area that it has lost become tools, which cut
+fresh packings of the same rock as deep as the new one does, and hardly wear. Finished runs are kept; --read starts
+none. Writes into DIR the outlines, sharp_and_worn.csv and .md, a figure and provenance.json: forces, peaks, chips and
+friction over the area lost, beside the peak by Evans' theory.
 """
 import csv
 import json
@@ -27,9 +27,9 @@ from rockwear.report.folder import RunFolder
 
 SHAPES = 3
 """Number of outlines, the new one included."""
-SEEDS = 1, 2
-"""Packings that every outline cuts."""
-CUT = {**steady_cut.CUT, **steady_cut.ROCK, "wear_acceleration": 0, "report": "false"}
+SEEDS = 2, 3
+"""Packings that every tool cuts."""
+CUT = {**steady_cut.CUT, **steady_cut.ROCK, "report": "false"}
 RAKE = CUT.pop("rake")
 WORN = {**CUT, "rake": RAKE, "seed": 4, "heat": "true", "wear_acceleration": 3000, "snapshot_period": 1e-4}
 """The cut in which the tool wears."""
@@ -86,7 +86,7 @@ def figure(tools):
     for axes, (name, heading) in zip(panels[1:], QUANTITIES.items()):
         lost = 1e6 * np.array([tool["lost"] for tool in tools])
         for k, tool in enumerate(tools):
-            each = [one[name].value for one in tool["each"]]
+            each = [one[name].value for one in tool["each"].values()]
             axes.plot([lost[k]] * len(each), each, "o", color="#c8a15a", markersize=4,
                       label="one packing" if not k else None)
         values, errors = np.array([tool[name] for tool in tools]).T
@@ -107,7 +107,7 @@ def write(folder, tools):
     with open(folder / "sharp_and_worn.csv", "w", encoding="utf-8", newline="") as file:
         csv.writer(file).writerows([["lost [m2]", "packing", *QUANTITIES], *(
             [tool["lost"], seed, *(one[name].value for name in QUANTITIES)]
-            for tool in tools for seed, one in zip(SEEDS, tool["each"]))])
+            for tool in tools for seed, one in tool["each"].items())])
     generated.record(folder / "sharp_and_worn.png", folder / "sharp_and_worn.csv")
     return generated.write_page(folder / "sharp_and_worn.md", [
         "Means ± standard errors of the cuts' own records, from three depths of cut on. The effective rake is that of "
@@ -134,7 +134,8 @@ def start(folder, **where):
         if wait_for({"worn": runs.start("worn", steady_cut.SCRIPT, **WORN)}, lambda name, run: name):
             return 1
         jobs = {(number, seed): runs.start(f"tool_{number}-{seed}", steady_cut.SCRIPT,
-                                           **{**CUT, "outline": tool["path"], "seed": seed})
+                                           **{**CUT, "seed": seed},
+                                           **{"outline": tool["path"]} if number else {"rake": RAKE})
                 for seed in SEEDS for number, tool in enumerate(shapes(folder))}
         return wait_for(jobs, lambda key, run: run.path.name)
 
@@ -144,11 +145,12 @@ def main(folder, read=False, **where):
     folder.mkdir(parents=True, exist_ok=True)
     failed, tools = 0 if read else start(folder, **where), []
     for number, tool in enumerate(shapes(folder) if not failed else ()):
-        places = [folder / f"tool_{number}-{seed}" for seed in SEEDS]
-        each = [steady_cut.of_run(RunFolder(place)) for place in places if (place / "summary.json").exists()]
+        places = {seed: folder / f"tool_{number}-{seed}" for seed in SEEDS}
+        each = {seed: steady_cut.of_run(RunFolder(place)) for seed, place in places.items()
+                if (place / "summary.json").exists()}
         if each:
-            tools.append({**tool, "each": each, **{name: steady_cut.over_packings([one[name] for one in each])
-                                                   for name in QUANTITIES}})
+            tools.append({**tool, "each": each, **{
+                name: steady_cut.over_packings([one[name] for one in each.values()]) for name in QUANTITIES}})
     if tools:
         print(write(folder, tools))
     return failed
