@@ -4,7 +4,7 @@ from yade import O, Subdomain, Vector3, ViscElMat, utils
 
 from rockwear.engines.base import Engine
 from rockwear.kernels.checks import require
-from rockwear.kernels.viscous_spring import viscous_spring
+from rockwear.kernels.viscous_spring import stable_dashpots, viscous_spring
 
 SUPPORT_RADIUS = 1e4
 """Radius of a support over that of its particle: their line keeps its direction, and its spring its linearity."""
@@ -19,9 +19,10 @@ COLUMNS = ("numbers", "supports", "places", "normals", "forces", "kn", "kt", "cn
 class AbsorbingBoundary(Engine):
     """Holds rock particles in the plane by springs and dashpots of kernels.viscous_spring.
 
-    moduli: kernels.elastic_moduli.Moduli of the rock; density: kg/m3 of its bulk; period: steps between samples of the
-    energy. `hold` and `release` may be called between any two steps once the rock is bonded; a held particle must be
-    free to move.
+    moduli: kernels.elastic_moduli.Moduli of the rock; density: kg/m3 of its bulk; step, critical: s, time step and that
+    of the bonded rock: where few particles stand for a large face, dashpots are no larger than leaves the step stable;
+    period: steps between samples of the energy. `hold` and `release` may be called between any two steps once the rock
+    is bonded; a held particle must be free to move.
 
     A support is a sphere at rest that nothing else meets. It reaches to the far side of its particle, so that they
     touch at the particle's centre: the contact neither turns it nor feels it turn. The force of that overlap, and what
@@ -34,9 +35,9 @@ class AbsorbingBoundary(Engine):
 
     name = "absorbing_boundary"
 
-    def __init__(self, *, moduli, density, period=10):
+    def __init__(self, *, moduli, density, step, critical, period=10):
         super().__init__(period=period)
-        self.moduli, self.density = moduli, density
+        self.moduli, self.density, self.step, self.critical = moduli, density, step, critical
         self.numbers, self.supports, self.idle = (np.empty(0, int) for _ in range(3))
         self.places, self.normals, self.forces = (np.empty((0, 2)) for _ in range(3))
         self.kn, self.kt, self.cn, self.ct = (np.empty(0) for _ in range(4))
@@ -63,6 +64,9 @@ class AbsorbingBoundary(Engine):
         along = np.abs(np.sum(given * normals[which], axis=1)) > np.sqrt(0.5) * np.linalg.norm(given, axis=1)
         total = [np.bincount(which, np.where(along, one, other), len(held)) for one, other in (
             constants[0:2], constants[1::-1], constants[2:4], constants[3:1:-1])]
+        masses = [O.bodies[number].state.mass for number in held.tolist()]
+        most = stable_dashpots(masses=masses, springs=np.maximum(*total[:2]), step=self.step, critical=self.critical)
+        total[2:] = (np.minimum(dashpots, most) for dashpots in total[2:])
         exerted = self._springs(np.broadcast_to(displacements, given.shape)[first], normals, *total[:2])
         exerted += self._release(held)
         start = len(self.numbers)

@@ -35,6 +35,20 @@ def viscous_spring(*, moduli, density, areas, distances):
                      NORMAL_DASHPOT * density * fast * areas, TANGENTIAL_DASHPOT * density * slow * areas)
 
 
+def stable_dashpots(*, masses, springs, step, critical):
+    """(k,) N s/m, the largest dashpots of particles with these springs that leave a leapfrog step stable. (Ours.)
+
+    An assembly is stable where 4 M - dt^2 K - 2 dt C is positive definite (kernels.stability). K of the bonds alone is
+    at most 4 M / dt_c^2 with their critical step dt_c, so what remains for a spring k and a dashpot c of one particle
+    is 4 m (1 - (dt / dt_c)^2) >= dt^2 k + 2 dt c.
+
+    masses (k,) kg; springs (k,) N/m; step dt, critical dt_c: s, 0 < dt <= dt_c. Raises ParameterError.
+    """
+    masses, springs = np.asarray(masses, float), np.asarray(springs, float)
+    require(0 < step <= critical, "step", step, f"greater than 0 and at most the critical step {critical:.3g}", "s")
+    return np.maximum(2 * masses * (1 - (step / critical)**2) / step - 0.5 * step * springs, 0.0)
+
+
 def shares(along, low, high):
     """(k,) m of the boundary from `low` to `high` that each of the places `along` (k,) m is nearest to."""
     along = np.asarray(along, float)

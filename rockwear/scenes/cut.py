@@ -111,7 +111,10 @@ class Cut(Scene):
         self.dashpots = None
         if self.bond_damping:
             self.dashpots = BondDashpots(rock=rock, bonds=self.bonds, ratio=self.bond_damping)
-        self.boundary = self.boundary_model.engine(rock, BOUNDARY_PERIOD) if self.boundary_model else None
+        self.boundary = None
+        if self.boundary_model:
+            self.boundary = self.boundary_model.engine(rock, period=BOUNDARY_PERIOD, step=self.time_step,
+                                                       critical=self.bonded_step)
         self.recorder = Recorder(self.output.history(), period=max(1, self.steps_in(accuracy.record_period)))
         self.guard = EnergyGuard(work=lambda: tool.contact.work_done, floor=self._least_energy(), period=GUARD_PERIOD)
         curved = self.programme.motion.angular_velocity

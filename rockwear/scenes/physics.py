@@ -150,11 +150,12 @@ class Boundary:
 
     kind: str
 
-    def engine(self, rock, period):
+    def engine(self, rock, *, period, step, critical):
         """engines.absorbing_boundary.AbsorbingBoundary; None where nothing moves."""
         if self.kind != "absorbing":
             return None
-        return AbsorbingBoundary(moduli=rock.moduli(), density=rock.density, period=period)
+        return AbsorbingBoundary(moduli=rock.moduli(), density=rock.density, period=period, step=step,
+                                 critical=critical)
 
 
 @dataclass(frozen=True)

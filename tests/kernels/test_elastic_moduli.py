@@ -10,7 +10,8 @@ from rockwear.kernels.checks import ParameterError
 from rockwear.kernels.elastic_moduli import Moduli, elastic_moduli, stiffness_tensor
 from rockwear.kernels.packing import contacts, pack
 from rockwear.kernels.stability import contact_rows
-from rockwear.kernels.viscous_spring import shares, viscous_spring
+from rockwear.kernels.stability import critical_time_step
+from rockwear.kernels.viscous_spring import shares, stable_dashpots, viscous_spring
 
 KN, KT = 2e10, 5e9
 
@@ -116,3 +117,28 @@ def test_a_window_is_as_stiff_as_the_half_plane(direction):
                    (-0.4 * width, -0.5 * height)])
     window, large = (settlements(factor * 40, factor * 23, at, direction) for factor in (1, 4))
     assert window == pytest.approx(large, rel=0.1)
+
+
+@pytest.mark.parametrize("part, spring", [(0.3, 0.0), (0.8, 0.0), (0.95, 0.0), (0.8, 1e9)])
+def test_dashpots_leave_the_step_stable(part, spring):
+    """A chain of discs of which one is held: the exact limit of bonds and dashpots is not below the step, and for a
+    disc that no bond holds it is the step."""
+    x = np.column_stack([2e-3 * np.arange(6), np.zeros(6)])
+    common = dict(positions=x, radii=np.full(6, 1e-3), masses=np.full(6, 8e-3), inertias=np.full(6, 4e-9),
+                  fixed=[0])
+    chain = dict(bonds=[[k, k + 1] for k in range(5)], kn=1e10, kt=4e9)
+    critical = critical_time_step(**common, **chain)
+    step = part * critical
+    most, = stable_dashpots(masses=[8e-3], springs=[spring], step=step, critical=critical)
+    held = dict(ground=([5], [[1.0, 0.0]], spring, 0.0, most))
+    assert most > 0 and critical_time_step(**common, **chain, **held) >= step
+    alone = critical_time_step(**common, bonds=np.empty((0, 2), int), kn=0.0, kt=0.0,
+                               ground=([5], [[1.0, 0.0]], spring, 0.0, stable_dashpots(
+                                   masses=[8e-3], springs=[spring], step=step, critical=1e9)[0]))
+    assert alone == pytest.approx(step, rel=1e-5)
+
+
+@pytest.mark.parametrize("step", [0.0, 2e-7])
+def test_dashpots_at_a_step_that_is_not_stable_without_them(step):
+    with pytest.raises(ParameterError, match="step = "):
+        stable_dashpots(masses=[1.0], springs=[0.0], step=step, critical=1e-7)

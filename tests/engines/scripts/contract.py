@@ -353,7 +353,8 @@ class Absorbing(World):
         self.rock = discs(lattice(8, 5))
 
     def _engines(self):
-        self.boundary = AbsorbingBoundary(moduli=Moduli(2e10, 0.2, 2e10 / 2.4), density=2500.0, period=3)
+        self.boundary = AbsorbingBoundary(moduli=Moduli(2e10, 0.2, 2e10 / 2.4), density=2500.0, period=3,
+                                          step=self.time_step, critical=1e-6)
         return [self.bonds, self.boundary, self.rock_friction]
 
     def _hold(self, numbers, normal, displacements=0.0):

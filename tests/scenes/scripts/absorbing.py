@@ -96,14 +96,17 @@ class Block:
         yade_scene.put_loop(rock=LAW, ratcheting_free=False)
         self.bonds = yade_scene.bonds_engine(rock, LAW, lambda: O.time)
         yade_scene.make_bonds(rock, self.bonds)
-        self.boundary = AbsorbingBoundary(moduli=self.moduli, density=self.density, period=2)
+        critical = critical_time_step(
+            positions=rock.positions, radii=rock.radii, masses=rock.masses, inertias=rock.inertias, bonds=rock.pairs,
+            kn=LAW.kn, kt=LAW.kt)
+        # At 0.8 the dashpots of the lattice would be cut by a tenth.
+        self.step = 0.7 * critical
+        self.boundary = AbsorbingBoundary(moduli=self.moduli, density=self.density, period=2, step=self.step,
+                                          critical=critical)
         self.engines = [self.bonds, self.boundary]
         base.register(self.engines)
         base.insert(self.engines)
         self.bonds.connect()
-        self.step = 0.8 * critical_time_step(
-            positions=rock.positions, radii=rock.radii, masses=rock.masses, inertias=rock.inertias, bonds=rock.pairs,
-            kn=LAW.kn, kt=LAW.kt)
 
     def hold_bottom(self):
         low = np.flatnonzero(self.rock.positions[:, 1] < 1.05 * self.rock.radii)
