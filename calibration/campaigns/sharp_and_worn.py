@@ -91,10 +91,10 @@ def figure(tools):
                       label="one packing" if not k else None)
         values, errors = np.array([tool[name] for tool in tools]).T
         axes.errorbar(lost, values, errors, color="#444444", capsize=3, label="mean, its standard error")
-        axes.set(title=heading, xlabel="area lost / mm²", ylim=(0, None))
         if name == "peak":
             axes.plot(lost, [tool["evans"] for tool in tools], "s:", markersize=4, color="#2c6e91", label="Evans")
             axes.legend(fontsize=8)
+        axes.set(title=heading, xlabel="area lost / mm²", ylim=(0, None))
     return drawn
 
 
