@@ -8,7 +8,6 @@ none. Writes into DIR the outlines, sharp_and_worn.csv and .md, a figure and pro
 friction over the area lost, beside the peak by Evans' theory.
 """
 import csv
-import json
 import math
 import sys
 from pathlib import Path
@@ -20,10 +19,11 @@ from calibration import generated
 from calibration.campaigns import steady_cut
 from calibration.campaigns.runs import PLACEMENT, Runs, placement, wait_for
 from rockwear.kernels import cutting_theory
-from rockwear.model.rock_file import find
+from rockwear.model import rock_file
 from rockwear.report import plots
 from rockwear.report.bodies import tool_loops
 from rockwear.report.folder import RunFolder
+from rockwear.scenes.parameters import OF_ROCK
 
 SHAPES = 3
 """Number of outlines, the new one included."""
@@ -63,8 +63,8 @@ def effective_rake(polygon, depth):
 
 def evans(rake, depth):
     """kN/m, peak cutting force of a sharp tool by Evans' theory; nan beyond its range."""
-    rock = json.loads(Path(find(CUT["rock"])).read_text(encoding="utf-8"))
-    tension = rock["plane"]["measured"]["tensile_strength"]["mean"]
+    rock = rock_file.read(rock_file.find(CUT["rock"]), OF_ROCK).parts["plane"]
+    tension = rock.measured["tensile_strength"]["mean"]
     try:
         return 1e-3 * cutting_theory.evans(tensile_strength=tension, depth=depth, rake=rake)
     except ValueError:
