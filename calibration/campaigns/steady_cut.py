@@ -65,20 +65,22 @@ CUTS = {
     "rake -15°": dict(rake=-15.0),
     "rake 10°": dict(rake=10.0),
     "depth 2.5 mm": dict(depth_of_cut=2.5e-3, discs_per_depth=8, cut_length=0.04),
-    "depth 10 mm": dict(depth_of_cut=0.01, discs_per_depth=32),
     "velocity 4 m/s": dict(velocity=4.0, snapshot_period=1e-3),
+    "velocity 2 m/s": dict(velocity=2.0, snapshot_period=2e-3, cut_length=0.03),
     "window doubled": dict(window_behind=0.024, window_ahead=0.05, window_height=0.04),
     "tool friction 0.6": dict(tool_mu=0.6),
     "clearance 12°, tip 0.2 mm": dict(clearance=12.0, tip_radius=2e-4),
     "boundary fixed": dict(boundary="fixed"),
     "damping 5000 1/s": dict(background_damping=5e3),
+    "eight discs, depth 2.5 mm": dict(depth_of_cut=2.5e-3, discs_per_depth=4, cut_length=0.06),
+    "eight discs, depth 10 mm": dict(depth_of_cut=0.01, discs_per_depth=16, cut_length=0.1),
     "eight discs, window doubled": dict(window_behind=0.02, window_ahead=0.05, window_height=0.04, tooth_height=0.02,
                                         grading_factor=3, fine_depth=0.011),
 }
 """How else the base rock is cut, or the rock that a case begins with."""
 DRAWN = {BASE: "steady_cut", FINEST: "steady_cut_finest"}
 """{case: name of its figures}."""
-JUDGED = BASE, EIGHT, FINEST, "depth 2.5 mm", "depth 10 mm"
+JUDGED = BASE, EIGHT, FINEST, "depth 2.5 mm", "eight discs, depth 2.5 mm", "eight discs, depth 10 mm"
 CASES = [BASE, *[name for name in ROCKS if name != BASE], *CUTS]
 
 COLUMNS = {"specific energy / UCS": "energy", "mean Fc, kN/m": "force", "peak / mean": "peaks",
@@ -248,14 +250,12 @@ def envelope(folder, found):
 def relations(found):
     """Rows of a table: what several cuts tell together, against RELATIONS."""
     ours, known, rows = {}, found.get(BASE), []
-    forces = {name: row["force"] for name, row in found.items() if math.isfinite(row["force"].standard_error)}
-    if BASE in forces:
-        depths, rakes = ({CUTS.get(name, {}).get(what, CUT[what]): force for name, force in forces.items()
-                          if name == BASE or what in CUTS.get(name, {})} for what in ("depth_of_cut", "rake"))
+    for rock in (BASE, EIGHT):
+        depths, rakes = (forces_over(found, rock, what) for what in ("depth_of_cut", "rake"))
         if len(depths) > 1:
-            ours["chip_force_exponent", ""] = exponent(list(depths), *np.array(list(depths.values())).T)
+            ours["chip_force_exponent", rock] = exponent(list(depths), *np.array(list(depths.values())).T)
         if len(rakes) > 1:
-            ours["force_over_rake", ""] = slope(np.radians(list(rakes)), *1e3 * np.array(list(rakes.values())).T)
+            ours["force_over_rake", rock] = slope(np.radians(list(rakes)), *1e3 * np.array(list(rakes.values())).T)
     for name, change in CUTS.items():
         if known and name in found and "wear_flat" in change:
             more = {what: difference(found[name][what], known[what]) for what in ("force", "pressed")}
@@ -269,6 +269,13 @@ def relations(found):
                 rows.append([case, one.case, f"{one.low:g} to {one.high:g} {one.unit}", one.basis, shown(measured),
                              one.verdict(*measured)])
     return rows
+
+
+def forces_over(found, rock, what):
+    """{value: Measured mean force} of the cuts of a rock that differ in one parameter; without the rock's own, none."""
+    return {CUTS.get(name, {}).get(what, CUT[what]): row["force"] for name, row in found.items()
+            if rock in found and rock_of(name) == rock and (name == rock or what in CUTS[name])
+            and math.isfinite(row["force"].standard_error)}
 
 
 def difference(one, other):

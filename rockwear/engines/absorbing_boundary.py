@@ -12,6 +12,8 @@ MATERIAL = "absorbing boundary"
 IDLE_PLACE = Vector3(0, 0, 1e9)
 NO_SLIP = 1e9
 """Coefficient of friction of a support."""
+FOLLOWED = 0.5
+"""Way of a particle along the normal, over its radius, from which its support begins anew where it then is."""
 COLUMNS = ("numbers", "supports", "places", "normals", "forces", "kn", "kt", "cn", "ct")
 """What is kept of each held particle."""
 
@@ -26,8 +28,9 @@ class AbsorbingBoundary(Engine):
 
     A support is a sphere at rest that nothing else meets. It reaches to the far side of its particle, so that they
     touch at the particle's centre: the contact neither turns it nor feels it turn. The force of that overlap, and what
-    else is constant, is a permanent force on the particle. YADE's law has no tension, but does not need it before the
-    particle has moved by its diameter. Idle supports wait for the next particle.
+    else is constant, is a permanent force on the particle. YADE's law has no tension, and would let go of a particle
+    that has come away by its diameter: before that its support follows it, and what the spring exerts by then becomes
+    constant. So springs are linear however far a particle moves. Idle supports wait for the next particle.
 
     `absorbed` (J) is the work of the dashpots, by the trapezoidal rule over samples; `released` (J) what the springs
     held that were let go. `elastic_energy` is what they hold now.
@@ -96,15 +99,36 @@ class AbsorbingBoundary(Engine):
         for k, number in enumerate(numbers.tolist()):
             exerted[k] = now.get(number, 0.0)
         self.released += float(self._energies()[gone].sum())
-        for k in gone.tolist():
+        self._disconnect(gone)
+        for column in COLUMNS:
+            setattr(self, column, np.delete(getattr(self, column), gone, axis=0))
+        return exerted
+
+    def _disconnect(self, held):
+        """Take the supports of these rows away."""
+        for k in held.tolist():
             # The loop would make the contact again, as one of rock on rock, if the two still met.
             O.bodies[int(self.supports[k])].state.pos = IDLE_PLACE
             O.interactions.erase(int(self.numbers[k]), int(self.supports[k]))
             O.forces.setPermF(int(self.numbers[k]), Vector3.Zero)
-        self.idle = np.concatenate([self.idle, self.supports[gone]])
-        for column in COLUMNS:
-            setattr(self, column, np.delete(getattr(self, column), gone, axis=0))
-        return exerted
+        self.idle = np.concatenate([self.idle, self.supports[held]])
+
+    def _follow(self):
+        """Begin anew with the springs of particles that have gone far: the same forces, from other places."""
+        radii = np.array([O.bodies[number].shape.radius for number in self.numbers.tolist()])
+        moved = self._moved()
+        far = np.flatnonzero(np.abs(self._split(moved)[0]) > FOLLOWED * radii)
+        if not len(far):
+            return
+        self.released += float(self._energies()[far].sum())
+        self.forces[far] = self._exerted()[far]
+        self.places[far] += moved[far]
+        supports = self._supports(len(far))
+        self._disconnect(far)
+        self.supports[far] = supports
+        for k in far.tolist():
+            self._connect_support(k)
+        self._set_forces(far.tolist())
 
     def _supports(self, count):
         """(count,) ids of idle supports, new ones where there are too few."""
@@ -175,10 +199,11 @@ class AbsorbingBoundary(Engine):
         return float(np.sum(self.cn * along**2 + self.ct * across**2))
 
     def act(self):
-        """Add the work of the dashpots since the last visit."""
+        """Add the work of the dashpots since the last visit, and follow particles that have gone far."""
         elapsed, before = self.elapsed(), self.power
         self.power = self._power()
         self.absorbed += 0.5 * (before + self.power) * elapsed
+        self._follow()
 
     def elastic_energy(self):
         """J of the springs, less the work of the constant forces."""

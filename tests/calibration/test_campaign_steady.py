@@ -65,36 +65,40 @@ def test_specific_energy_is_over_the_strength_of_the_same_rock(tmp_path):
 
 
 def test_cuts_are_judged_at_their_own_depth_and_strength(tmp_path):
-    for case in ("base", "depth_10_mm"):
+    for case in ("base", "eight_discs__depth_10_mm"):
         write_run(tmp_path / f"cut/{case}-1")
-    write(tmp_path / "lab/base-compression-1", {"peak_stress": 50e6})
+    for rock in ("base", "eight_discs"):
+        write(tmp_path / f"lab/{rock}-compression-1", {"peak_stress": 50e6})
     assert not steady_cut.envelope(tmp_path, {"base": steady_cut.of_case(tmp_path, "base")})
     write(tmp_path / "lab/base-tension-1", {"tensile_strength": 4e6})
-    found = {case: steady_cut.of_case(tmp_path, case) for case in ("base", "depth 10 mm")}
+    found = {case: steady_cut.of_case(tmp_path, case) for case in ("base", "eight discs, depth 10 mm")}
     judged = {tuple(row[:2]): row[2:] for row in steady_cut.envelope(tmp_path, found)}
     # 30 kN/m at a UCS of 50 MPa.
     assert judged["base", "mean cutting force"][::3] == ["66 to 144 kN/m", "below"]
     assert judged["base", "specific energy"][::3] == ["5 to 20 MJ/m³", "inside"]
-    assert ("depth 10 mm", "mean cutting force") not in judged
-    assert judged["depth 10 mm", "overbreak"][3] == "inside"
+    assert ("eight discs, depth 10 mm", "mean cutting force") not in judged
+    assert judged["eight discs, depth 10 mm", "overbreak"][3] == "inside"
 
 
 def test_what_cuts_tell_together():
     def row(force, error, thrust=40.0):
         return {"force": Measured(force, error), "pressed": Measured(thrust, 3.0), "ucs": Measured(50.0, 2.0)}
-    found = {"base": row(40.0, 4.0), "depth 2.5 mm": row(20.0, 2.0), "depth 10 mm": row(80.0, 8.0),
+    found = {"base": row(40.0, 4.0), "depth 2.5 mm": row(40.0 * 0.5**0.8, 2.0),
+             "eight discs": row(50.0, 5.0), "eight discs, depth 10 mm": row(50.0 * 2**0.4, 1.0),
              "rake 10°": row(40.0 - 0.6 * 15, 4.0), "rake -15°": row(40.0 + 0.6 * 10, 4.0),
              "wear flat 1 mm": row(60.0, 4.0, 80.0), "wear flat 2 mm": row(40.0, math.nan, 70.0)}
     rows = {(case, words.split(",")[0]): (ours, verdict)
             for case, words, _, _, ours, verdict in steady_cut.relations(found)}
-    assert rows["", "mean cutting force over depth"] == ("1 ± 0.1", "inside")
+    assert rows["base", "mean cutting force over depth"] == ("0.8 ± 0.19", "inside")
+    # Another rock's cuts do not count, nor its own without the cut that they are compared with.
+    assert rows["eight discs", "mean cutting force over depth"] == ("0.4 ± 0.15", "below, within the error")
     # -0.6 kN/m per degree.
-    ours, verdict = rows["", "change of the mean cutting force per rad of rake"]
+    ours, verdict = rows["base", "change of the mean cutting force per rad of rake"]
     assert ours.startswith("-3.44e+04 ±") and verdict == "inside"
     # 40 kN/m more over 50 MPa times 1 mm; half as much in the cutting force.
     assert rows["wear flat 1 mm", "thrust that a wear flat of 1 or 2 mm adds"] == ("0.8 ± 0.085", "inside")
     assert rows["wear flat 1 mm", "cutting force that a wear flat adds"] == ("0.5 ± 0.15", "inside")
-    assert not steady_cut.relations({"depth 10 mm": row(80.0, 8.0)})
+    assert not steady_cut.relations({"eight discs, depth 10 mm": row(80.0, 8.0)})
 
 
 def test_the_figure_over_the_discs_has_what_is_there():

@@ -20,3 +20,8 @@ def test_the_dashpots_take_what_is_missing(checks):
 
 def test_a_particle_that_is_released_feels_nothing(checks):
     assert checks["release"] < 1e-6
+
+
+def test_a_particle_that_is_pulled_off_stays_on_its_spring(checks):
+    assert checks["pulled"]["force"] == pytest.approx(1, rel=2e-3)
+    assert checks["pulled"]["energy"] == pytest.approx(1, rel=2e-3)

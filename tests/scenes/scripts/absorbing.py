@@ -13,7 +13,7 @@ from rockwear.engines import base
 from rockwear.engines.access import rock_states
 from rockwear.engines.absorbing_boundary import AbsorbingBoundary
 from rockwear.kernels.bond_laws import ElasticBrittle
-from rockwear.kernels.elastic_moduli import elastic_moduli
+from rockwear.kernels.elastic_moduli import Moduli, elastic_moduli
 from rockwear.kernels.stability import critical_time_step
 from rockwear.kernels.viscous_spring import shares
 from rockwear.model.rock import Arranged, Specimen
@@ -155,6 +155,27 @@ def release(block):
     return abs(block.energy() - before) / springs
 
 
+def pulled():
+    """Force on a particle that is pulled off by ten radii, over that of its spring and dashpot; the energies of the
+    spring over the work."""
+    O.reset()
+    yade_scene.put_rock_materials(mu=LAW.mu)
+    particle = O.bodies.append(utils.sphere((0, 0, 0), RADIUS, material=O.materials[0]))
+    yade_scene.put_loop(rock=LAW, ratcheting_free=False)
+    O.dt = 1e-7
+    boundary = AbsorbingBoundary(moduli=Moduli(2e10, 0.2, 2e10 / 2.4), density=2500.0, period=10, step=O.dt,
+                                 critical=1e-5)
+    base.register([boundary])
+    base.insert([boundary])
+    boundary.hold([particle], [(0.0, -1.0)], [2 * RADIUS], [0.1])
+    state, (speed, steps) = O.bodies[particle].state, (10.0, 10000)
+    state.blockedDOFs, state.vel = "xyzXYZ", (0, speed, 0)
+    base.run(steps)
+    way, kn, cn = speed * steps * O.dt, float(boundary.kn[0]), float(boundary.cn[0])
+    return {"force": -O.forces.f(particle)[1] / (kn * way + cn * speed),
+            "energy": (boundary.elastic_energy() + boundary.released) / (0.5 * kn * way**2)}
+
+
 def main():
     kind = sys.argv[-2] if sys.argv[-2] == "packing" else "lattice"
     make, wavelength = {"lattice": (lattice, 40 * RADIUS), "packing": (packing, 40 * RADIUS)}[kind]
@@ -163,6 +184,7 @@ def main():
     found = {f"{wave}{degrees}": reflected(block, wave, degrees, wavelength, amplitude)
              for (wave, degrees), amplitude in zip(pulses, AMPLITUDES)}
     found["release"] = release(block)
+    found["pulled"] = pulled()
     with open(sys.argv[-1], "w", encoding="utf-8") as file:
         json.dump(found, file)
 
