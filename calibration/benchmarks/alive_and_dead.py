@@ -4,7 +4,7 @@ from statistics import median
 
 from yade import O, PyRunner
 
-TURNS, FIRST = 5, 200
+TURNS, FIRST = 15, 100
 """Turns; steps that are run before the clock starts."""
 
 

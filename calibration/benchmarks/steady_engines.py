@@ -25,7 +25,7 @@ CUT = dict(rock="interlocked_sandstone", discs_per_depth=16, velocity=8.0, cut_l
 """That of `make run`, with the defaults of its script."""
 BEGIN = 0.01
 """m."""
-STEPS, SAMPLED = 1000, 6000
+STEPS, SAMPLED = 400, 6000
 """Steps of a turn, and of the two runs that are compared."""
 
 
