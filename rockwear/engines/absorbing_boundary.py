@@ -10,6 +10,8 @@ SUPPORT_RADIUS = 1e4
 """Radius of a support over that of its particle: their line keeps its direction, and its spring its linearity."""
 MATERIAL = "absorbing boundary"
 IDLE_PLACE = Vector3(0, 0, 1e9)
+FREE, HELD = "zXY", "zXYZ"
+"""Blocked degrees of freedom of particles in the plane."""
 NO_SLIP = 1e9
 """Coefficient of friction of a support."""
 FOLLOWED = 0.5
@@ -27,13 +29,14 @@ class AbsorbingBoundary(Engine):
     is bonded; a held particle must be free to move.
 
     A support is a sphere at rest that nothing else meets. It reaches to the far side of its particle, so that they
-    touch at the particle's centre: the contact neither turns it nor feels it turn. The force of that overlap, and what
+    touch at the particle's centre: the contact does not turn it. A held particle does not turn: where YADE measures
+    shear by full radii, a loose one would roll along its support without any force. The force of that overlap, and what
     else is constant, is a permanent force on the particle. YADE's law has no tension, and would let go of a particle
     that has come away by its diameter: before that its support follows it, and what the spring exerts by then becomes
     constant. So springs are linear however far a particle moves. Idle supports wait for the next particle.
 
-    `absorbed` (J) is the work of the dashpots, by the trapezoidal rule over samples; `released` (J) what the springs
-    held that were let go. `elastic_energy` is what they hold now.
+    `absorbed` (J) is the work of the dashpots, by the trapezoidal rule over samples; `followed` (J) what springs held
+    where their supports followed. `elastic_energy` is what they hold with that.
     """
 
     name = "absorbing_boundary"
@@ -44,7 +47,7 @@ class AbsorbingBoundary(Engine):
         self.numbers, self.supports, self.idle = (np.empty(0, int) for _ in range(3))
         self.places, self.normals, self.forces = (np.empty((0, 2)) for _ in range(3))
         self.kn, self.kt, self.cn, self.ct = (np.empty(0) for _ in range(4))
-        self.absorbed = self.released = self.power = 0.0
+        self.absorbed = self.followed = self.power = 0.0
 
     def connect(self):
         # YADE does not save permanent forces.
@@ -81,6 +84,9 @@ class AbsorbingBoundary(Engine):
         for k in added:
             self._connect_support(k)
         self._set_forces(added)
+        for number in held.tolist():
+            # What spin it has is lost.
+            O.bodies[number].state.blockedDOFs, O.bodies[number].state.angVel = HELD, Vector3.Zero
         self.power = self._power()
 
     def release(self, numbers):
@@ -98,36 +104,31 @@ class AbsorbingBoundary(Engine):
         now = {int(number): force for number, force in zip(self.numbers[gone], self._exerted()[gone])}
         for k, number in enumerate(numbers.tolist()):
             exerted[k] = now.get(number, 0.0)
-        self.released += float(self._energies()[gone].sum())
-        self._disconnect(gone)
-        for column in COLUMNS:
-            setattr(self, column, np.delete(getattr(self, column), gone, axis=0))
-        return exerted
-
-    def _disconnect(self, held):
-        """Take the supports of these rows away."""
-        for k in held.tolist():
+        for k in gone.tolist():
+            O.bodies[int(self.numbers[k])].state.blockedDOFs = FREE
             # The loop would make the contact again, as one of rock on rock, if the two still met.
             O.bodies[int(self.supports[k])].state.pos = IDLE_PLACE
             O.interactions.erase(int(self.numbers[k]), int(self.supports[k]))
             O.forces.setPermF(int(self.numbers[k]), Vector3.Zero)
-        self.idle = np.concatenate([self.idle, self.supports[held]])
+        self.idle = np.concatenate([self.idle, self.supports[gone]])
+        for column in COLUMNS:
+            setattr(self, column, np.delete(getattr(self, column), gone, axis=0))
+        return exerted
 
     def _follow(self):
-        """Begin anew with the springs of particles that have gone far: the same forces, from other places."""
+        """Move the supports of particles that have gone far along the normal, so that they touch at the centre again:
+        what the springs exert by then becomes constant."""
         radii = np.array([O.bodies[number].shape.radius for number in self.numbers.tolist()])
-        moved = self._moved()
-        far = np.flatnonzero(np.abs(self._split(moved)[0]) > FOLLOWED * radii)
+        along, _ = self._split(self._moved())
+        far = np.flatnonzero(np.abs(along) > FOLLOWED * radii)
         if not len(far):
             return
-        self.released += float(self._energies()[far].sum())
-        self.forces[far] = self._exerted()[far]
-        self.places[far] += moved[far]
-        supports = self._supports(len(far))
-        self._disconnect(far)
-        self.supports[far] = supports
-        for k in far.tolist():
-            self._connect_support(k)
+        before, way = self._energies()[far].sum(), along[far, None] * self.normals[far]
+        self.forces[far] -= self.kn[far, None] * way
+        self.places[far] += way
+        self.followed += float(before - self._energies()[far].sum())
+        for k, (x, y) in zip(far.tolist(), way.tolist()):
+            O.bodies[int(self.supports[k])].state.pos += Vector3(x, y, 0)
         self._set_forces(far.tolist())
 
     def _supports(self, count):
@@ -207,14 +208,14 @@ class AbsorbingBoundary(Engine):
 
     def elastic_energy(self):
         """J of the springs, less the work of the constant forces."""
-        return float(self._energies().sum()) if len(self.numbers) else 0.0
+        return self.followed + float(self._energies().sum())
 
     def log(self):
         return {"absorbed_energy": (self.absorbed, "J"), "boundary_power": (self.power, "W")}
 
     def state(self):
         return {**{name: getattr(self, name).copy() for name in (*COLUMNS, "idle")},
-                "absorbed": self.absorbed, "released": self.released, "power": self.power}
+                "absorbed": self.absorbed, "followed": self.followed, "power": self.power}
 
     def put_back(self, state):
         """YADE's scene is again what it was at `state`; the sums of energy go on."""
@@ -224,4 +225,4 @@ class AbsorbingBoundary(Engine):
 
     def restore(self, state):
         self.put_back(state)
-        self.absorbed, self.released = (float(state[name]) for name in ("absorbed", "released"))
+        self.absorbed, self.followed = (float(state[name]) for name in ("absorbed", "followed"))

@@ -23,8 +23,9 @@ WHOLE = 5e-3
 away; chips go further."""
 MOST_TENSE, MOST_PRESSED = 1e-4, 1e-3
 """Strains by which bonds of rock that enters are pulled and pressed at most; it is to enter unbroken."""
-TELLING, FITS = 2, 3
-"""Slabs at the end of the window that tell how it is displaced; fits, each without what the last one shows as loose."""
+TELLING, FITS = (2, 1), 3
+"""Slabs at the end of the window that tell how it is displaced, whichever fits better: there may be a crack between
+two; fits, each without what the last one shows as loose."""
 PARKED = 3.0
 """Particles that are not in the rock yet stand so many heights of the window below it, and their largest diameters
 apart."""
@@ -175,11 +176,7 @@ class RockMass(RockAssembly):
         i, j = self.pairs.T
         new = np.isin(np.arange(self.count), moved)
         made = self.bonded & (new[i] | new[j])
-        places = self.places
-        displacement = self._continued(moved, new, positions - places, intact)
-        now = positions.copy()
-        now[moved] = places[moved] + displacement
-        longer = np.linalg.norm(now[i] - now[j], axis=1) - self.bond_lengths
+        _, displacement, now, longer = self._entering(moved, new, positions, intact)
         made &= (new[i] & new[j]) | (abs(longer) <= MISFIT * self.height)
         longer = np.clip(longer, -MOST_PRESSED * self.bond_lengths, MOST_TENSE * self.bond_lengths)
         overlapping = packing.contacts(now, self.radii, -MISFIT * self.height)
@@ -189,15 +186,37 @@ class RockMass(RockAssembly):
         self.absent[in_the_way] = True
         return displacement, made & ~self.absent[self.pairs].any(axis=1), longer, in_the_way
 
-    def _continued(self, moved, new, displaced, intact):
-        """(k, 2) m, displacement of the slab that enters: that of the rock mass at the end of the window, (n, 2), by
-        least squares with a parabola over the height and a line along the cut, of which the slope is linear over the
-        height. Particles that are off by more than MISFIT are loose and do not count. None where half of the rock
-        does not, or is displaced by more than rock that is whole."""
+    def misfit(self, positions, intact):
+        """m by which half of the bonds between the rock that is there and the slab that enters next would be longer or
+        shorter than in untouched rock, or by more. positions (n, 2) m, intact (m,): as for `fit`."""
+        before, moved = self.state(), self.advance()
+        found = self._entering(moved, np.isin(np.arange(self.count), moved), positions, intact)
+        self.restore(before)
+        return found[0]
+
+    def _entering(self, moved, new, positions, intact):
+        """Misfit (m) of the slab that enters, its displacement (k, 2) m, (n, 2) m of all particles with it, (m,) m by
+        which their bonds are longer than in untouched rock."""
+        (i, j), places, found = self.pairs.T, self.places, []
+        seam = self.bonded & (new[i] ^ new[j])
+        fits = [self._continued(slabs, moved, new, positions - places, intact) for slabs in TELLING]
+        for displacement in [fit for fit in fits if fit is not None] or [np.zeros((len(moved), 2))]:
+            now = positions.copy()
+            now[moved] = places[moved] + displacement
+            longer = np.linalg.norm(now[i] - now[j], axis=1) - self.bond_lengths
+            misfit = float(np.median(abs(longer[seam]))) if seam.any() else 0.0
+            found.append((misfit, displacement, now, longer))
+        return min(found, key=lambda one: one[0])
+
+    def _continued(self, slabs, moved, new, displaced, intact):
+        """(k, 2) m, displacement of the slab that enters: that of the rock mass in the last `slabs` of the window,
+        (n, 2), by least squares with a parabola over the height and a line along the cut, of which the slope is linear
+        over the height. Particles that are off by more than MISFIT are loose and do not count. None where half of the
+        rock does not, or is displaced by more than rock that is whole."""
         points, start = self.points, self.end - self.slab_length
         there = ~new & ~self.absent
         piece = pieces(self.count, self.pairs, intact & there[self.pairs].all(axis=1))
-        there &= points[:, 0] > start - TELLING * self.slab_length
+        there &= points[:, 0] > start - slabs * self.slab_length
         whole = np.isin(piece, piece[there & self.anchored]) & (np.linalg.norm(displaced, axis=1) < self.most_displaced)
         telling = np.flatnonzero(there & whole)
 
@@ -207,7 +226,7 @@ class RockMass(RockAssembly):
 
         for _ in range(FITS):
             if len(telling) < 0.5 * np.count_nonzero(there):
-                return np.zeros((len(moved), 2))
+                return None
             found = np.linalg.lstsq(basis(telling), displaced[telling], rcond=None)[0]
             off = np.linalg.norm(displaced[telling] - basis(telling) @ found, axis=1)
             telling = telling[off <= MISFIT * self.height]

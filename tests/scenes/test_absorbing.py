@@ -9,7 +9,7 @@ def checks(tmp_path_factory):
     return checks_of("absorbing", tmp_path_factory.mktemp("absorbing"))
 
 
-@pytest.mark.parametrize("pulse, limit", [("P0", 0.05), ("S0", 0.05), ("P45", 0.15), ("S45", 0.18)])
+@pytest.mark.parametrize("pulse, limit", [("P0", 0.05), ("S0", 0.06), ("P45", 0.15), ("S45", 0.15)])
 def test_little_comes_back(checks, pulse, limit):
     assert checks[pulse]["amplitude"] < limit
 
@@ -23,5 +23,4 @@ def test_a_particle_that_is_released_feels_nothing(checks):
 
 
 def test_a_particle_that_is_pulled_off_stays_on_its_spring(checks):
-    assert checks["pulled"]["force"] == pytest.approx(1, rel=2e-3)
-    assert checks["pulled"]["energy"] == pytest.approx(1, rel=2e-3)
+    assert checks["pulled"] == pytest.approx({"force": 1, "shear": 1, "energy": 1}, rel=2e-3)

@@ -161,7 +161,7 @@ def pulled():
     O.reset()
     yade_scene.put_rock_materials(mu=LAW.mu)
     particle = O.bodies.append(utils.sphere((0, 0, 0), RADIUS, material=O.materials[0]))
-    yade_scene.put_loop(rock=LAW, ratcheting_free=False)
+    yade_scene.put_loop(rock=LAW)
     O.dt = 1e-7
     boundary = AbsorbingBoundary(moduli=Moduli(2e10, 0.2, 2e10 / 2.4), density=2500.0, period=10, step=O.dt,
                                  critical=1e-5)
@@ -169,11 +169,12 @@ def pulled():
     base.insert([boundary])
     boundary.hold([particle], [(0.0, -1.0)], [2 * RADIUS], [0.1])
     state, (speed, steps) = O.bodies[particle].state, (10.0, 10000)
-    state.blockedDOFs, state.vel = "xyzXYZ", (0, speed, 0)
+    state.blockedDOFs, state.vel = "xyzXYZ", (0.5 * speed, speed, 0)
     base.run(steps)
-    way, kn, cn = speed * steps * O.dt, float(boundary.kn[0]), float(boundary.cn[0])
+    way, kn, kt, cn, ct = speed * steps * O.dt, *(float(getattr(boundary, name)[0]) for name in ("kn", "kt", "cn", "ct"))
     return {"force": -O.forces.f(particle)[1] / (kn * way + cn * speed),
-            "energy": (boundary.elastic_energy() + boundary.released) / (0.5 * kn * way**2)}
+            "shear": -O.forces.f(particle)[0] / (kt * 0.5 * way + ct * 0.5 * speed),
+            "energy": boundary.elastic_energy() / (0.5 * (kn + 0.25 * kt) * way**2)}
 
 
 def main():
