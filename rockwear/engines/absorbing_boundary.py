@@ -118,8 +118,8 @@ class AbsorbingBoundary(Engine):
     def _follow(self):
         """Move the supports of particles that have gone far along the normal, so that they touch at the centre again:
         what the springs exert by then becomes constant."""
-        radii = np.array([O.bodies[number].shape.radius for number in self.numbers.tolist()])
         along, _ = self._split(self._moved())
+        radii = np.array([self._radius(k) for k in range(len(along))])
         far = np.flatnonzero(np.abs(along) > FOLLOWED * radii)
         if not len(far):
             return
@@ -153,11 +153,14 @@ class AbsorbingBoundary(Engine):
         phys.kn, phys.ks, phys.cn, phys.cs = (float(getattr(self, name)[k]) for name in ("kn", "kt", "cn", "ct"))
         phys.tangensOfFrictionAngle = NO_SLIP
 
+    def _radius(self, k):
+        """m of the particle when it was held; heat may have changed it since."""
+        return O.bodies[int(self.supports[k])].shape.radius / SUPPORT_RADIUS
+
     def _set_forces(self, held):
         for k in held:
-            number = int(self.numbers[k])
-            overlap = 2 * O.bodies[number].shape.radius
-            O.forces.setPermF(number, Vector3(*(self.forces[k] + self.kn[k] * overlap * self.normals[k]), 0))
+            constant = self.forces[k] + 2 * self._radius(k) * self.kn[k] * self.normals[k]
+            O.forces.setPermF(int(self.numbers[k]), Vector3(*constant, 0))
         # Else a step right after one of YADE's loop goes without permanent forces.
         O.forces.f(0, sync=True)
 

@@ -5,6 +5,9 @@ from yade import O, utils
 
 from rockwear.engines.base import Engine
 
+FIXED = "xyzXYZ"
+"""Blocked degrees of freedom of bodies that do not move by themselves."""
+
 
 class BackgroundDamping(Engine):
     """F = -rate m v and T = -rate I omega on the rock, as its exact solution v(t) = v(0) exp(-rate t) between visits.
@@ -21,15 +24,16 @@ class BackgroundDamping(Engine):
         self.dissipated = 0.0
 
     def connect(self):
-        states = (O.bodies[i].state for i in self.bodies)
-        self.states = [state for state in states if state.blockedDOFs != "xyzXYZ"]
+        self.states = [O.bodies[i].state for i in self.bodies]
 
     def act(self):
         factor = math.exp(-self.rate * self.elapsed())
         self.dissipated += utils.kineticEnergy() * (1 - factor * factor)
         for state in self.states:
-            state.vel = state.vel * factor
-            state.angVel = state.angVel * factor
+            # What a window holds aside now may be rock later.
+            if state.blockedDOFs != FIXED:
+                state.vel = state.vel * factor
+                state.angVel = state.angVel * factor
 
     def state(self):
         return {"dissipated": self.dissipated}

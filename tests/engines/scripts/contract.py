@@ -343,14 +343,14 @@ class Confined(Tension):
 
 
 class Absorbing(World):
-    """A block falls on a boundary that absorbs, which holds other particles as time goes on."""
+    """A block falls on a boundary that absorbs, which holds other particles as time goes on; one is pulled far off."""
 
     time_step = 1e-7
     law = ElasticBrittle(**{**STRENGTH, "Rn": 1e9, "Rt": 1e9})
 
     def __init__(self):
         super().__init__()
-        self.rock = discs(lattice(8, 5))
+        self.rock = discs(np.append(lattice(8, 5), [(0.05, 0.0)], axis=0))
 
     def _engines(self):
         self.boundary = AbsorbingBoundary(moduli=Moduli(2e10, 0.2, 2e10 / 2.4), density=2500.0, period=3,
@@ -364,7 +364,9 @@ class Absorbing(World):
     def _begin(self):
         for i in range(self.rock.count):
             O.bodies[i].state.vel = (1.0, -5.0, 0)
-        self._hold(range(8), (0, -1))
+        self._hold([*range(8), self.rock.count - 1], (0, -1))
+        pulled = O.bodies[self.rock.count - 1].state
+        pulled.blockedDOFs, pulled.vel = "xyzXYZ", (0, 300.0, 0)
 
     def event(self, last):
         if last:
