@@ -205,7 +205,8 @@ def of_case(folder, case):
     found["energy"] = scaled(found["energy"], 1e-6 / found["ucs"].value)
     way = [run.parameter("cut_length") + run.parameter("ramp_length") for run in runs]
     minutes = [run.summary["wall_time"]["total"] / 60 for run in runs]
-    return {**found, "packings": len(runs), "cost": sum(minutes) / sum(way),
+    missed = [run.balances["energy"]["residual"] / run.balances["energy"]["tool_work"] for run in runs]
+    return {**found, "packings": len(runs), "cost": sum(minutes) / sum(way), "missed": max(map(abs, missed)),
             "way": sum(run.parameter("cut_length") / run.parameter("depth_of_cut") - BEGIN for run in runs)}
 
 
@@ -220,9 +221,10 @@ def shown(measured):
 def causes(found):
     """Lines: a row a case."""
     return generated.table(
-        ["", "packings", "depths cut", "UCS, MPa", *COLUMNS, "minutes per metre"],
+        ["", "packings", "depths cut", "UCS, MPa", *COLUMNS, "energy missed, %", "minutes per metre"],
         [[case, row["packings"], f"{row['way']:.0f}", shown(row["ucs"]),
-          *(shown(row[name]) for name in COLUMNS.values()), f"{row['cost']:.0f}"] for case, row in found.items()])
+          *(shown(row[name]) for name in COLUMNS.values()), f"{100 * row['missed']:.1f}", f"{row['cost']:.0f}"]
+         for case, row in found.items()])
 
 
 def envelope(folder, found):
@@ -316,7 +318,8 @@ def write(folder):
     lines = ["## Causes, one at a time", "", f"Mean ± standard error: of the packings where there are three, else of "
              f"the cuts' own records, from {BEGIN} depths of cut on. Way under load: part of the way with a cutting "
              f"force above {LOAD:g} of the mean peak. Work in bonds: part of the tool's work that bonds take "
-             "in slip and damage, and those alone that broke in tension. Minutes on a shared core.", "", *causes(found)]
+             "in slip and damage, and those alone that broke in tension. Energy missed: residual of the balance over "
+             "the tool's work, of the worst packing. Minutes on a shared core.", "", *causes(found)]
     if judged := envelope(folder, found):
         lines += ["## Against the envelope", "",
                   *generated.table(["cut", "", "range", "basis", "ours", "verdict"], [*judged, *relations(found)])]
