@@ -171,7 +171,8 @@ def pulled():
     state, (speed, steps) = O.bodies[particle].state, (10.0, 10000)
     state.blockedDOFs, state.vel = "xyzXYZ", (0.5 * speed, speed, 0)
     base.run(steps)
-    way, kn, kt, cn, ct = speed * steps * O.dt, *(float(getattr(boundary, name)[0]) for name in ("kn", "kt", "cn", "ct"))
+    kn, kt, cn, ct = (float(getattr(boundary, name)[0]) for name in ("kn", "kt", "cn", "ct"))
+    way = speed * steps * O.dt
     return {"force": -O.forces.f(particle)[1] / (kn * way + cn * speed),
             "shear": -O.forces.f(particle)[0] / (kt * 0.5 * way + ct * 0.5 * speed),
             "energy": boundary.elastic_energy() / (0.5 * (kn + 0.25 * kt) * way**2)}
