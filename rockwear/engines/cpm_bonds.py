@@ -40,10 +40,10 @@ _VECTORS = {"normal": lambda contact: contact.geom.normal, "increment": lambda c
             "shear_force": lambda contact: contact.phys.shearForce,
             "strain": lambda contact: contact.phys.epsT, "slipped": lambda contact: contact.phys.epsTPl}
 """Vectors of a bond that looks read, and partly write, for many bonds at once."""
-_GROUPS = {"slip": ("slipped", "shear_force"), "damage": ("slipped", "shear_force", "omega"),
+_GROUPS = {"slip": ("slipped", "shear_force"), "damage": ("slipped", "omega"),
            "forces": ("normal", "normal_force", "shear_force")}
 """What is read together."""
-SLIPPED, SHEAR, OMEGA = slice(0, 3), slice(3, 6), 6
+SLIPPED, SHEAR, OMEGA = slice(0, 3), slice(3, 6), 3
 """Rows of the groups "slip" and "damage"."""
 
 
@@ -188,11 +188,10 @@ class CpmBonds(BondLog):
 
     def act(self):
         """Sample the work of slip and look at the bonds, each in its turn."""
+        if O.iter % self.between_samples == 0:
+            self._sample()
         if O.iter % self.between_looks == 0:
-            self.look_at_all(O.iter % self.between_samples == 0)
-        elif O.iter % self.between_samples == 0:
-            there = np.flatnonzero(self.status != SEPARATED)
-            self._sample(there, self.places.read("damage", there))
+            self.look_at_all()
         if (O.iter + 1) % self.between_samples == 0:
             self._prepare()
         self._weaken(*self.rising)
@@ -212,16 +211,13 @@ class CpmBonds(BondLog):
         numbers = np.flatnonzero(self.active & (self.status != SEPARATED))
         self.before = numbers, self.places.read("slip", numbers)
 
-    def _sample(self, there, now):
-        """The work of slip of the last step. there: (k,) bonds; now: what _GROUPS["damage"] says of them."""
+    def _sample(self):
+        """The work of slip of the last step."""
         numbers, before = self.before
-        at = np.zeros(len(self.pairs), int)
-        at[there] = np.arange(1, len(there) + 1)
-        at = at[numbers] - 1
         # The memory of bonds that have separated meanwhile is no longer theirs.
-        if (at < 0).any():
-            numbers, before, at = numbers[at >= 0], before[:, at >= 0], at[at >= 0]
-        now = now[:SHEAR.stop].take(at, axis=1)
+        there = self.status[numbers] != SEPARATED
+        numbers, before = numbers[there], before[:, there]
+        now = self.places.read("slip", numbers)
         # YADE leaves the slip of a bond without any shear strength as it is.
         let_go = _vanish(now[SHEAR]) & ~_vanish(before[SHEAR])
         slid = np.flatnonzero(_differ(now[SLIPPED], before[SLIPPED]) | let_go)
@@ -232,13 +228,12 @@ class CpmBonds(BondLog):
         stored = (_dot(force, force) - _dot(force_before, force_before)) / self.kt[numbers]
         self._dissipate(numbers, 0.5 * self.between_samples * (work - stored), True)
 
-    def look_at_all(self, sampled=False):
-        """Bring damage and status of all bonds up to date; sampled: and sample the slip of the last step."""
+    def look_at_all(self):
+        """Bring damage and status of all bonds up to date."""
         there = np.flatnonzero(self.status != SEPARATED)
         now = self.places.read("damage", there)
-        if sampled:
-            self._sample(there, now)
-        omega, let_go = now[OMEGA], self.active[there] & _vanish(now[SHEAR])
+        omega, let_go = now[OMEGA], self.active[there]
+        let_go[let_go] = _vanish(self.places.read("shear_force", there[let_go]))
         changed = np.flatnonzero((omega != self.omega[there]) | ~_vanish(now[SLIPPED]) | let_go)
         numbers, omega = there[changed], omega[changed]
         self.rising = self._weakened(numbers[:0])
