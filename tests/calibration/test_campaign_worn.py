@@ -14,7 +14,7 @@ from rockwear.report.folder import RunFolder
 from tests.running import ROOT
 
 TINY = {**sharp_and_worn.CUT, "discs_per_depth": 4, "cut_length": 0.02, "snapshot_period": 5e-4}
-SEEDS = sharp_and_worn.SEEDS
+SEEDS = 2, 3
 
 
 @pytest.fixture(scope="module")
@@ -25,6 +25,7 @@ def campaign(tmp_path_factory):
     def run():
         with pytest.MonkeyPatch.context() as patch:
             patch.setattr(sharp_and_worn, "SHAPES", 2)
+            patch.setattr(sharp_and_worn, "SEEDS", SEEDS)
             patch.setattr(sharp_and_worn, "CUT", TINY)
             patch.setattr(sharp_and_worn, "WORN", {**TINY, "rake": sharp_and_worn.RAKE, "wear_acceleration": 2e3})
             assert sharp_and_worn.main(folder) == 0
