@@ -5,6 +5,7 @@ from functools import cached_property
 import numpy as np
 
 from rockwear.kernels import packing
+from rockwear.kernels.continued import continued
 from rockwear.kernels.elastic_moduli import elastic_moduli
 from rockwear.kernels.fragments import pieces
 from rockwear.kernels.strip import StraightStrip
@@ -23,9 +24,9 @@ WHOLE = 5e-3
 away; chips go further."""
 MOST_TENSE, MOST_PRESSED = 1e-4, 1e-3
 """Strains by which bonds of rock that enters are pulled and pressed at most; it is to enter unbroken."""
-TELLING, FITS = (2, 1), 3
+TELLING = 2, 1
 """Slabs at the end of the window that tell how it is displaced, whichever fits better: there may be a crack between
-two; fits, each without what the last one shows as loose."""
+two."""
 PARKED = 3.0
 """Particles that are not in the rock yet stand so many heights of the window below it, and their largest diameters
 apart."""
@@ -90,11 +91,6 @@ class RockMass(RockAssembly):
     def slab_length(self):
         """m of a slab."""
         return self.width / SLABS
-
-    @property
-    def most_displaced(self):
-        """m by which uncracked rock at the window's end may be displaced."""
-        return WHOLE * self.height
 
     @property
     def begin(self):
@@ -196,10 +192,22 @@ class RockMass(RockAssembly):
 
     def _entering(self, moved, new, positions, intact):
         """Misfit (m) of the slab that enters, its displacement (k, 2) m, (n, 2) m of all particles with it, (m,) m by
-        which their bonds are longer than in untouched rock."""
-        (i, j), places, found = self.pairs.T, self.places, []
+        which their bonds are longer than in untouched rock.
+
+        Its displacement is that of the rock mass at the end of the window. Where half of that is loose, or displaced by
+        more than rock that is whole, there is none.
+        """
+        (i, j), places, fits, found = self.pairs.T, self.places, [], []
+        displaced, there = positions - places, ~new & ~self.absent
+        points = (self.points - [self.end - self.slab_length, 0.0]) / self.height
+        piece = pieces(self.count, self.pairs, intact & there[self.pairs].all(axis=1))
+        for slabs in TELLING:
+            near = there & (points[:, 0] > -slabs * self.slab_length / self.height)
+            whole = near & np.isin(piece, piece[near & self.anchored])
+            whole &= np.linalg.norm(displaced, axis=1) < WHOLE * self.height
+            fits.append(continued(points[whole], displaced[whole], points[moved], tolerance=MISFIT * self.height,
+                                  least=0.5 * np.count_nonzero(near)))
         seam = self.bonded & (new[i] ^ new[j])
-        fits = [self._continued(slabs, moved, new, positions - places, intact) for slabs in TELLING]
         for displacement in [fit for fit in fits if fit is not None] or [np.zeros((len(moved), 2))]:
             now = positions.copy()
             now[moved] = places[moved] + displacement
@@ -207,30 +215,6 @@ class RockMass(RockAssembly):
             misfit = float(np.median(abs(longer[seam]))) if seam.any() else 0.0
             found.append((misfit, displacement, now, longer))
         return min(found, key=lambda one: one[0])
-
-    def _continued(self, slabs, moved, new, displaced, intact):
-        """(k, 2) m, displacement of the slab that enters: that of the rock mass in the last `slabs` of the window,
-        (n, 2), by least squares with a parabola over the height and a line along the cut, of which the slope is linear
-        over the height. Particles that are off by more than MISFIT are loose and do not count. None where half of the
-        rock does not, or is displaced by more than rock that is whole."""
-        points, start = self.points, self.end - self.slab_length
-        there = ~new & ~self.absent
-        piece = pieces(self.count, self.pairs, intact & there[self.pairs].all(axis=1))
-        there &= points[:, 0] > start - slabs * self.slab_length
-        whole = np.isin(piece, piece[there & self.anchored]) & (np.linalg.norm(displaced, axis=1) < self.most_displaced)
-        telling = np.flatnonzero(there & whole)
-
-        def basis(numbers):
-            x, y = ((points[numbers] - [start, 0.0]) / self.height).T
-            return np.column_stack([np.ones(len(x)), y, y**2, x, x * y])
-
-        for _ in range(FITS):
-            if len(telling) < 0.5 * np.count_nonzero(there):
-                return None
-            found = np.linalg.lstsq(basis(telling), displaced[telling], rcond=None)[0]
-            off = np.linalg.norm(displaced[telling] - basis(telling) @ found, axis=1)
-            telling = telling[off <= MISFIT * self.height]
-        return basis(moved) @ found
 
     def moduli(self):
         """kernels.elastic_moduli.Moduli of the bonded packing, the same in the strip and in the plane."""

@@ -4,6 +4,7 @@ from yade import O, Quaternion, Vector3
 
 from rockwear.engines.access import rock_states
 from rockwear.engines.bond_log import INTACT
+from rockwear.model.rock_mass import WHOLE
 from rockwear.scenes import yade_scene
 
 FREE = "zXY"
@@ -154,7 +155,7 @@ class RockWindow:
         # Springs are at rest in untouched rock, unless a crack has moved it.
         places = rock.places
         moved = (rock_states(rock)[:, :2] - places)[numbers]
-        moved[np.linalg.norm(moved, axis=1) > rock.most_displaced] = 0.0
+        moved[np.linalg.norm(moved, axis=1) > WHOLE * rock.height] = 0.0
         normals = rock.strip.turned(np.tile(normal, (count, 1)), rock.strip.unroll(places[numbers]))
         self.boundary.hold(numbers, normals, areas, np.full(count, distance), moved)
 
