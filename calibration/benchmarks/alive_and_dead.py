@@ -4,7 +4,7 @@ from statistics import median
 
 from yade import O, PyRunner
 
-TURNS, FIRST = 15, 100
+TURNS, FIRST = 5, 200
 """Turns; steps that are run before the clock starts."""
 
 

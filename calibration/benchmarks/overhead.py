@@ -15,7 +15,7 @@ from rockwear.run import parameters, servers
 from rockwear.run.main import COMMON
 from rockwear.scenes import cutting
 
-STEPS, WARM_UP = 1000, 0.0015
+STEPS, WARM_UP = 3000, 0.0015
 
 
 def main():

@@ -3,15 +3,14 @@ from calibration.benchmarks import steady_cost
 
 NAMES = [*steady_cost.ERRORS, "residual", "tool_work"]
 EXACT = {**dict.fromkeys(NAMES, 20.0), "tool_work": 200.0}
-FOUND = {"overhead": 0.083, "median": {"alive": 2.166e-3, "dead": 2e-3}, "discs": 10, "bonds": 20, "steps": 30,
-         "seconds_a_step": {"alive": [1.1, 1.2, 1.3], "dead": [1.0, 1.0, 1.0]}, "sampled": 40, "distribution": 0.002,
+FOUND = {"overhead": 0.083, "step": 2e-3, "discs": 10, "bonds": 20, "steps": 30, "sampled": 40, "distribution": 0.002,
          "seconds": {"bonds": 3.0, "tool_contact": 1.0, "heat": 0.001}, "exact": EXACT,
          "found": {**EXACT, "rock_friction": 20.4, "residual": 1.0, "wear": 19.9}}
 
 
 def test_errors_are_relative_and_over_the_work_of_the_tool():
     text = "\n".join(steady_cost.table(FOUND))
-    assert "cost 8.3 % of YADE's own step of 2.00 ms" in text and "between 10.0 and 30.0 %" in text
+    assert "cost 8.3 % of YADE's own step of 2.00 ms" in text
     assert "bonds 75 %, tool contact 25 %." in text
     assert "| friction work in the rock | +2.00 % | +0.20 % |" in text
     assert "| wear | -0.50 % | – |" in text
