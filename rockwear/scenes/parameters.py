@@ -241,7 +241,7 @@ TIME_STEP = (
 ACCURACY = Group("accuracy", (
     *TIME_STEP,
     Parameter("sampling_period", 1, "steps", integer(1), "between samples of the tool's contacts", "make bench"),
-    Parameter("rock_sampling_period", 7, "steps", integer(1), "between samples of sliding rock contacts", "make bench"),
+    Parameter("rock_sampling_period", 4, "steps", integer(1), "between samples of sliding rock contacts", "make bench"),
     Parameter("wear_period", 100, "steps", integer(1), "between updates of wear and removal",
               "calibration/results/particle_size.md"),
     Parameter("heat_period", 1e-4, "s", above_zero, "between heat steps, each divided as stability asks", "make bench",
