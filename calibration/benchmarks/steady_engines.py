@@ -63,7 +63,7 @@ def sampled(scene, state, folder, change=lambda scene: None):
 def timed(scene):
     """{what: number} of the cost over TIMED of way."""
     def spent():
-        return time.process_time(), O.iter, np.array([engine.wall_time for engine in scene.engines])
+        return time.perf_counter(), O.iter, np.array([engine.wall_time for engine in scene.engines])
 
     before = spent()
     while scene.programme.distance < BEGIN + TIMED:
