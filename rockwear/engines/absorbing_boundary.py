@@ -31,9 +31,9 @@ class AbsorbingBoundary(Engine):
     A support is a sphere at rest that nothing else meets. It reaches to the far side of its particle, so that they
     touch at the particle's centre: the contact does not turn it. A held particle does not turn: where YADE measures
     shear by full radii, a loose one would roll along its support without any force. The force of that overlap, and what
-    else is constant, is a permanent force on the particle. YADE's law has no tension, and would erase the
-    contact of a particle that has moved inwards by its diameter: before that its support follows it, and what the
-    spring exerts by then becomes constant. So springs are linear however far a particle moves. Idle supports wait for the next particle.
+    else is constant, is a permanent force on the particle. YADE's law has no tension, and would erase the contact of a
+    particle that has moved inwards by its diameter: before that its support follows it, and what the spring exerts by
+    then becomes constant. So springs are linear however far a particle moves. Idle supports wait for the next particle.
 
     `absorbed` (J) is the work of the dashpots, by the trapezoidal rule over samples; `followed` (J) what springs held
     where their supports followed. `elastic_energy` is what they hold with that.
