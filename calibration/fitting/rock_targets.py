@@ -38,7 +38,7 @@ STAGES = "small", "full", "check"
 """Of a fit, in this order."""
 GIVEN = "porosity", "weibull_modulus"
 """Parameters of the rock that are given and not fitted, beside its grains."""
-KEPT = "rotation", "bond_shear_energy"
+KEPT = "rotation", "bond_shear_energy", "bond_crushing", "crushing_hardening"
 """Parameters of the rock that the fit begins with, which stay as they are there."""
 UNITS = {"kpa": 1e3, "mpa": 1e6, "gpa": 1e9}
 """Pa, of the units that the header of a table may name."""

@@ -297,8 +297,9 @@ class SpecimenOutput(Output):
         source, *others = works = self.scene.works()
         balance = {source: works[source], **{f"against_{name}": -works[name] for name in others}}
         balance.update({name: now - self.scene.base[name] for name, now in self.scene.stored_energy().items()})
-        balance.update(rock_friction=self.scene.rock_friction.total, bond_breaking=self.scene.bonds.energy_released,
-                       numerical_damping=self._damped())
+        balance.update(rock_friction=self.scene.rock_friction.total,
+                       bond_breaking=self.scene.bonds.energy_released - self.scene.bonds.energy_crushed,
+                       rock_crushing=self.scene.bonds.energy_crushed, numerical_damping=self._damped())
         return {"energy": (with_residual(balance, source), self.energy)}
 
     def model(self):

@@ -18,7 +18,8 @@ class BondLog(Engine):
 
     pairs: (m, 2) body ids; law: of rockwear.kernels.bond_laws; laws: (m,), the law of each bond, `law` itself if not
     given; clock: a function giving the time (s) for the crack log. `broken` {number: (interaction, phys)} are bonds
-    that are frictional contacts with the reference length of the bond; `energy_released` (J) what bonds dissipated.
+    that are frictional contacts with the reference length of the bond; `energy_released` (J) what bonds dissipated,
+    `energy_crushed` the part of it that crushing took.
     """
 
     name = "bonds"
@@ -29,7 +30,8 @@ class BondLog(Engine):
         self.pairs = np.asarray(pairs)
         self.law, self.laws = law, [law] * len(self.pairs) if laws is None else laws
         self.status = np.full(len(self.pairs), INTACT, np.int8)
-        self.cracks, self.broken, self.energy_released, self.clock = [], {}, 0.0, clock
+        self.cracks, self.broken, self.clock = [], {}, clock
+        self.energy_released = self.energy_crushed = 0.0
         self.parted = []
         """Numbers of the bonds that have separated since `RockContacts` took note of them."""
 
@@ -97,10 +99,12 @@ class BondLog(Engine):
 
     def state(self):
         return {"status": self.status.copy(), "energy_released": self.energy_released,
+                "energy_crushed": self.energy_crushed,
                 "cracks": np.array(self.cracks, float).reshape(-1, len(Crack._fields))}
 
     def restore(self, state):
-        self.status, self.energy_released = state["status"].copy(), float(state["energy_released"])
+        self.status = state["status"].copy()
+        self.energy_released, self.energy_crushed = float(state["energy_released"]), float(state["energy_crushed"])
         self.cracks = [Crack(*row[:7], int(row[7]), row[8], int(row[9]), int(row[10]))
                        for row in state["cracks"].tolist()]
 

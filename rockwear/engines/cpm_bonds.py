@@ -6,9 +6,10 @@ from functools import cache
 import numpy as np
 from yade import CpmPhys, O, ScGeom
 
+from rockwear.engines import crushing
 from rockwear.engines.bond_log import BROKEN, INTACT, SEPARATED, BondLog, Crack
-from rockwear.engines.memory import MEMORY, TRIED, Places, check, offset
-from rockwear.kernels.bond_laws.cohesive import softening_energy
+from rockwear.engines.memory import MARKS, MEMORY, TRIED, Places, check, offset, place, require_memory
+from rockwear.kernels.bond_laws.cohesive import UNBREAKABLE, softening_energy
 
 LOOK_PERIOD = 10
 """Steps between looks at all bonds."""
@@ -16,8 +17,6 @@ STRAIGHT = 10
 """Points on the path that a bond is taken to have come before the first look that finds it softened or slipped."""
 SPENT = 1.0 - 1e-6
 """Damage of a bond that slip has broken: YADE keeps it, as a contact with friction, until it opens."""
-UNBREAKABLE = 1e29
-"""Strength (N) from which a bond is not to break at all."""
 
 
 def _slip_before(law, contact):
@@ -41,7 +40,7 @@ _VECTORS = {"normal": lambda contact: contact.geom.normal, "increment": lambda c
             "strain": lambda contact: contact.phys.epsT, "slipped": lambda contact: contact.phys.epsTPl}
 """Vectors of a bond that looks read, and partly write, for many bonds at once."""
 _GROUPS = {"slip": ("slipped", "shear_force"), "damage": ("slipped", "omega"),
-           "forces": ("normal", "normal_force", "shear_force")}
+           "forces": ("normal", "normal_force", "shear_force"), **crushing.GROUPS}
 """What is read together."""
 SLIPPED, SHEAR, OMEGA = slice(0, 3), slice(3, 6), 3
 """Rows of the groups "slip" and "damage"."""
@@ -49,16 +48,20 @@ SLIPPED, SHEAR, OMEGA = slice(0, 3), slice(3, 6), 3
 
 @cache
 def _behind_slip():
-    """Where YADE keeps omega and the cohesion, which it does not give by reference, behind epsTPl. Raises
-    ParameterError where memory is not what Python shows."""
-    tried = [CpmPhys(isCohesive=True, epsCrackOnset=1e-4, epsFracture=1e-2, undamagedCohesion=0.1 + k)
-             for k in range(TRIED)]
+    """{name: how far} behind epsTPl YADE keeps numbers that it does not give by reference. Raises ParameterError where
+    memory is not what Python shows."""
+    tried = [CpmPhys(isCohesive=True, epsCrackOnset=1e-4 + 1e-6 * k, epsFracture=1e-2 + 1e-4 * k, refLength=2.1 + k,
+                     E=1e3 + k, G=2e3 + k, undamagedCohesion=0.1 + k) for k in range(TRIED)]
     check(_Contact(None, ScGeom(), tried[0]), _VECTORS)
     for k, phys in enumerate(tried):
         phys.setDamage(0.123 + 0.1 * k)
     slipped = [phys.epsTPl for phys in tried]
-    return (offset("omega", slipped, [phys.omega for phys in tried]),
-            offset("cohesion", slipped, [phys.undamagedCohesion for phys in tried]))
+    names = {"omega": "omega", "cohesion": "undamagedCohesion", **crushing.LONGER, **crushing.SHORTER}
+    found = {name: offset(name, slipped, [getattr(phys, of) for phys in tried]) for name, of in names.items()}
+    # Nothing but memory sets epsNPl, which lies behind kappaD.
+    MEMORY[place(slipped[0]) + found["kappa"] + 1] = MARKS[0]
+    require_memory(tried[0].epsNPl == MARKS[0], "epsNPl")
+    return {**found, "crushed": found["kappa"] + 1}
 
 
 def _dot(a, b):
@@ -105,6 +108,10 @@ class CpmBonds(BondLog):
     C++ takes the part of the cohesion that is left to be that of the stiffness: every step sets the cohesion so that
     what is left is what the law says.
 
+    C++ crushes a bond in compression; the work follows from what it is shorter, epsNPl. A look hardens it. A crushed
+    bond that opens to its end stays a contact, without cohesion, as long as its particles are nearer than when it was
+    made, and books its slip as one that slip has broken.
+
     C++ erases a bond that has opened to its end; if its particles meet again, that is a plain contact, by their radii
     (which must not overlap when they are bonded). YADE turns the total shear strain of a bond with the contact, but not
     its plastic part: a look takes the slip so far out of both. Neither damage nor strains are in YADE's saved scenes:
@@ -123,17 +130,14 @@ class CpmBonds(BondLog):
         self.dissipated, self.by_slip, self.slip_taken = np.zeros(count), np.zeros(count), np.zeros(count)
         self.omega, self.active = np.zeros(count), np.zeros(count, bool)
         """Damage at the last look; whether the bond had slipped or softened by then."""
-        self.kn, self.kt, self.Rn, self.Rt, self.mu = (
-            np.array([getattr(law, name) for law in self.laws]) for name in ("kn", "kt", "Rn", "Rt", "mu"))
-        # Unbreakable bonds within grains have none of these.
-        self.onset, self.gone, self.slip_end, self.coupling = (
-            np.array([getattr(law, name, none) for law in self.laws])
-            for name, none in (("onset", math.nan), ("gone", math.nan), ("slip_end", math.inf), ("coupling", 0.0)))
+        self.kn, self.kt, self.Rn, self.Rt, self.mu, self.onset, self.gone, self.slip_end, self.coupling = (
+            np.array([getattr(law, name) for law in self.laws])
+            for name in ("kn", "kt", "Rn", "Rt", "mu", "onset", "gone", "slip_end", "coupling"))
         # Lengths (m) of the bonds that are there.
         self.contacts, self.lengths, self.strains = {}, np.zeros(count), None
-        omega, cohesion = _behind_slip()
         self.places = Places(count, vectors=_VECTORS, groups=_GROUPS,
-                             numbers={"omega": ("slipped", omega), "cohesion": ("slipped", cohesion)})
+                             numbers={name: ("slipped", behind) for name, behind in _behind_slip().items()})
+        self.crushing = crushing.Crushing(laws=self.laws, hardening=self.law.hardening, places=self.places)
         self.rising = self._weakened(np.zeros(0, int))
         """Of the bonds whose damage rose between the last two looks, by opening: every step sets their cohesion."""
 
@@ -143,9 +147,10 @@ class CpmBonds(BondLog):
         return phys.refPD
 
     def bond(self, numbers):
+        self.crushing.begin()
         for n in numbers.tolist():
             phys, law = O.interactions[tuple(self.pairs[n].tolist())].phys, self.laws[n]
-            length = phys.refLength
+            length = phys.refLength = self.crushing.reference_length(n, phys.refLength)
             phys.kn, phys.ks, phys.crossSection = law.kn, law.kt, 1.0
             phys.E, phys.G, phys.tanFrictionAngle = law.kn * length, law.kt * length, law.mu
             phys.undamagedCohesion, phys.isCohesive, phys.damLaw = law.Rt, True, 0
@@ -159,17 +164,18 @@ class CpmBonds(BondLog):
         self.contacts = {}
         self._follow(np.flatnonzero(self.status != SEPARATED))
         if self.strains is not None:
-            numbers, omegas, strains, slipped = self.strains
+            numbers, omegas, strains, slipped, crushed = self.strains
             for n, omega in zip(numbers.tolist(), omegas.tolist()):
                 if omega:
                     self.contacts[n].phys.setDamage(omega)
             self.places.write("strain", numbers, strains)
             self.places.write("slipped", numbers, slipped)
+            self.places.write("crushed", numbers, crushed)
             self.strains = None
         self._prepare()
 
     def _take_up(self, numbers):
-        for array in (self.dissipated, self.by_slip, self.slip_taken, self.omega):
+        for array in (self.dissipated, self.by_slip, self.slip_taken, self.omega, self.crushing.strains):
             array[numbers] = 0.0
         self.active[numbers] = False
         self._follow(numbers)
@@ -230,7 +236,16 @@ class CpmBonds(BondLog):
 
     def look_at_all(self):
         """Bring damage and status of all bonds up to date."""
+        if self.crushing.possible:
+            # Those without cohesion YADE may have erased meanwhile.
+            for n in np.flatnonzero((self.status == BROKEN) & (self.omega >= 1.0)).tolist():
+                if not self.contacts[n].interaction.isReal:
+                    self._separate(n)
         there = np.flatnonzero(self.status != SEPARATED)
+        if self.crushing.possible:
+            numbers, work = self.crushing.harden(there, self.places.read("crushed", there)[0], self.lengths)
+            self.energy_crushed += float(np.sum(work))
+            self._dissipate(numbers, work, True)
         now = self.places.read("damage", there)
         omega, let_go = now[OMEGA], self.active[there]
         let_go[let_go] = _vanish(self.places.read("shear_force", there[let_go]))
@@ -241,7 +256,7 @@ class CpmBonds(BondLog):
             return
         self._begin(numbers[~self.active[numbers]])
         self._soften(numbers, omega)
-        numbers = numbers[omega < 1.0]
+        numbers = numbers[self.status[numbers] != SEPARATED]
         forces = self.places.read("forces", numbers)
         slip = _take_slip(self.places, numbers, forces[:3], forces[6:],
                           self.kt[numbers] * self.lengths[numbers]) * self.lengths[numbers]
@@ -266,10 +281,15 @@ class CpmBonds(BondLog):
         self._dissipate(rising, spent, False)
         self.rising = self._weakened(rising[(omega[rises] < 1.0) & (self.coupling[rising] > 0.0)])
         for n in gone.tolist():
-            # Its last shear force went with it: YADE leaves that of the step before.
-            self._dissipate(n, 0.5 * self.contacts[n].phys.shearForce.squaredNorm() / self.kt[n], True)
+            interaction, _, phys = self.contacts[n]
             self._log(n)
-            self._separate(n)
+            if interaction.isReal:
+                # Beyond omega = 1 a cohesive bond would push where it should pull.
+                phys.isCohesive, self.status[n] = False, BROKEN
+            else:
+                # Its last shear force went with it: YADE leaves that of the step before.
+                self._dissipate(n, 0.5 * phys.shearForce.squaredNorm() / self.kt[n], True)
+                self._separate(n)
 
     def _damage(self, numbers, slip, forces):
         """Raise the damage of bonds by their slip (m). In the next step their forces fall to what the law then allows;
@@ -359,11 +379,13 @@ class CpmBonds(BondLog):
         there = np.flatnonzero(self.status != SEPARATED)
         return {**super().state(), "dissipated": self.dissipated.copy(), "by_slip": self.by_slip.copy(),
                 "slip_taken": self.slip_taken.copy(), "omega": self.omega.copy(), "active": self.active.copy(),
+                "crushed": self.crushing.strains.copy(),
                 "strain": self.places.read("strain", there).T, "plastic_strain": self.places.read("slipped", there).T}
 
     def restore(self, state):
         super().restore(state)
         for name in ("dissipated", "by_slip", "slip_taken", "omega", "active"):
             setattr(self, name, state[name].copy())
+        self.crushing.strains = state["crushed"].copy()
         there = np.flatnonzero(self.status != SEPARATED)
-        self.strains = there, self.omega[there], state["strain"].T, state["plastic_strain"].T
+        self.strains = there, self.omega[there], state["strain"].T, state["plastic_strain"].T, state["crushed"][there]

@@ -65,7 +65,8 @@ def _found(vector, values):
     return address % SIZE == 0 and address < 2**48 and np.array_equal(_peek(address, 3), values)
 
 
-def _require(condition, what):
+def require_memory(condition, what):
+    """Raise ParameterError where memory is not as expected; what: is not found."""
     require(condition, "YADE", config.version, f"one whose objects lie in memory as in Debian 12 and 13: {what} is not "
             f"found there (Python {sys.version.split()[0]})")
 
@@ -82,7 +83,7 @@ def check(found, of):
         same = list(vector(found)) == list(MARKS) and _found(vector(found), MARKS)
         for k, value in enumerate(before):
             vector(found)[k] = value
-        _require(same, name)
+        require_memory(same, name)
 
 
 REACH = 64
@@ -98,7 +99,7 @@ def offset(name, objects, values):
         # What lies before or behind them may be a copy.
         same &= near == value if len(near) == len(same) else False
     behind = np.flatnonzero(same) - REACH
-    _require(len(behind) == 1, name)
+    require_memory(len(behind) == 1, name)
     return int(behind[0])
 
 
@@ -163,7 +164,7 @@ def contact_layout():
     forces = {"normal_force": lambda phys: phys.normalForce, "shear_force": lambda phys: phys.shearForce}
     check(physes[0], forces)
     # A class has its table of functions first.
-    _require(class_of(physes[0]) == class_of(physes[1]) != class_of(geoms[0]), "class")
+    require_memory(class_of(physes[0]) == class_of(physes[1]) != class_of(geoms[0]), "class")
     return {"geom": offset("geom", contacts, [SIZE * (place(geom) + 1) for geom in geoms]),
             "phys": offset("phys", contacts, [SIZE * (place(phys) + 1) for phys in physes]),
             "bodies": offset("bodies", contacts, [contact.id1 + (contact.id2 << 32) for contact in contacts]),
@@ -191,5 +192,5 @@ def _list_of_contacts():
             found = _peek(begin, 2 * len(contacts), np.int64)[::2]
             if np.array_equal(pointed(found), contacts):
                 return word
-    _require(False, "list of contacts")
+    require_memory(False, "list of contacts")
     return None

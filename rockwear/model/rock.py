@@ -7,7 +7,8 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
 from rockwear.kernels import packing
-from rockwear.kernels.bond_laws import ElasticBrittle
+from rockwear.kernels.bond_laws import Cohesive, ElasticBrittle
+from rockwear.kernels.bond_laws.cohesive import UNBREAKABLE
 from rockwear.kernels import polygon as outline
 from rockwear.kernels.checks import ParameterError, not_negative, positive, require, within
 from rockwear.kernels.conduction import calibrated_conductance, paths
@@ -22,8 +23,6 @@ TILE = 8000
 ORDERED = 8000
 """Particles above which a packing is ordered along a curve: a step of YADE then takes 0.7 of the time
 (calibration/results/scale.md). Below, its order is the one that all results so far have."""
-UNBREAKABLE = 1e30
-"""Strength (N) of the bonds within a grain."""
 NEVER_TURNS = 1e9
 """Moment of inertia of particles that do not turn, over their own."""
 SCATTER_LIMITS = 0.05, 5.0
@@ -232,10 +231,10 @@ class RockAssembly:
             self.grains = grains(self.positions, volume=self.volume, edge=grain_edge, seed=seed, period=self.period)
             within = self.grains[self.pairs[:, 0]] == self.grains[self.pairs[:, 1]]
             require(law.linear, "grain_edge", grain_edge, f"0 with the law {law.name}, which is linear nowhere", "m")
-            kn, kt = within_grains or (law.kn, law.kt)
-            inner = ElasticBrittle(kn=kn, kt=kt, Rn=UNBREAKABLE, Rt=UNBREAKABLE, mu=law.mu)
-        scaled = {size: law.scaled(size) for size in np.unique(sizes[~within]).tolist()}
-        self.laws = [inner if inside else scaled[size] for size, inside in zip(sizes.tolist(), within)]
+        scaled = {size: law.scaled(size) for size in np.unique(sizes).tolist()}
+        if grain_edge:
+            inner = _within_grains(law, scaled, *(within_grains or (law.kn, law.kt)))
+        self.laws = [(inner if inside else scaled)[size] for size, inside in zip(sizes.tolist(), within)]
         if law.yade_law == "Cpm":
             self._clear_overlaps()
 
@@ -439,6 +438,13 @@ class Block(RockAssembly):
 
     def _near(self, positions, radii, gap):
         return packing.contacts(positions, radii, gap + (self.loosened - 1) * (2 * radii.max() + gap))
+
+
+def _within_grains(law, scaled, kn, kt):
+    """{size: law} of bonds that do not break, of these stiffnesses (N/m). scaled: {size: law} of those that do."""
+    if isinstance(law, Cohesive):
+        return {size: one.unbreakable(kn=kn, kt=kt) for size, one in scaled.items()}
+    return dict.fromkeys(scaled, ElasticBrittle(kn=kn, kt=kt, Rn=UNBREAKABLE, Rt=UNBREAKABLE, mu=law.mu))
 
 
 def _clearance(places, radii):

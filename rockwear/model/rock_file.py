@@ -42,7 +42,7 @@ RADII = {"plane": ("radius_min", "radius_max"), "space": ("radius",)}
 """Names of a part's resolution, which are parameters of the scenes too."""
 DIMENSION = {"plane": 0, "space": 1}
 """Place of a part's power in size_power."""
-OPTIONAL = "rock_density", "rotation"
+OPTIONAL = "rock_density", "rotation", "crushing_hardening"
 """Parameters that a file may leave out: the scene's defaults count."""
 
 

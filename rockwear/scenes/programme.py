@@ -165,11 +165,11 @@ class StartState:
     def put_back(self, folder):
         """The rock as it was kept, and in it the tool as it is worn now."""
         scene, bonds = self.scene, self.scene.bonds
-        released = bonds.energy_released
+        released = bonds.energy_released, bonds.energy_crushed
         self.cracks += bonds.cracks[len(self.kept["bonds"]["cracks"]):]
         O.load(str(folder / self.FILE))
         bonds.restore(self.kept["bonds"])
-        bonds.energy_released = released
+        bonds.energy_released, bonds.energy_crushed = released
         scene.tool.bodies.restore(self.kept["bodies"])
         if scene.programme.window:
             scene.programme.window.put_back(self.kept["window"])

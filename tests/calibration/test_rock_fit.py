@@ -144,7 +144,8 @@ def test_first_guesses_are_parameters_of_the_scenes(law):
     micro = Micro(law=law, targets=SANDSTONE, radius=2.5e-3, given={"porosity": 0.12, "grain_edge": 0.0})
     found = micro.parameters(micro.first)
     # What is off by default is not fitted.
-    of_law = {p.name for p in BOND_LAWS[law].parameters} - {"bond_shear_energy"}
+    of_law = {p.name for p in BOND_LAWS[law].parameters} - {
+        "bond_shear_energy", "bond_crushing", "crushing_hardening"}
     assert set(found) == {"bond_law", "bonding_gap", "porosity", *of_law}
     for name, value in found.items():
         OF_ROCK[name].check(value)
@@ -161,7 +162,8 @@ def test_a_search_begins_with_the_bonds_of_a_rock_at_other_radii(tmp_path):
     given = given_of(values, targets, start)
     assert given["grain_edge"] == pytest.approx(0.5 * part["grain_edge"])
     micro = Micro(law="cohesive", targets=targets, radius=6.25e-4, given=given, start=start)
-    interlocked = {"rotation": "blocked", "bond_shear_energy": 300.0, "weibull_modulus": 2.0}
+    interlocked = {"rotation": "blocked", "bond_shear_energy": 300.0, "weibull_modulus": 2.0,
+                   "bond_crushing": 2e8, "crushing_hardening": 0.2}
     rock = json.loads(rock_file.find("interlocked_sandstone").read_text(encoding="utf-8"))
     rock["plane"]["parameters"].update(interlocked)
     (tmp_path / "rock.json").write_text(json.dumps(rock), encoding="utf-8")

@@ -16,7 +16,7 @@ def test_vectors_are_read_and_written_as_python_gives_them(found):
 def test_numbers_behind_a_vector_are_those_of_python(found):
     for in_memory, in_python in found["behind"].values():
         assert in_memory == in_python
-    assert len({tuple(pair[0]) for pair in found["behind"].values()}) == 3
+    assert len({tuple(pair[0]) for pair in found["behind"].values()}) == 4
 
 
 def test_contacts_are_those_of_python(found):

@@ -213,6 +213,55 @@ def test_friction_remains_after_the_last_of_the_tension():
     assert Fn == pytest.approx([0.0, 0.0, -4e4, -4e4]) and Ft == pytest.approx([5e4, 0.0, 0.0, 0.5 * 4e4])
 
 
+RC = 3e5
+CRUSHING = Cohesive(bond_fracture_energy=ENERGY, bond_crushing=RC, crushing_hardening=0.0, **BRITTLE)
+HARDENING = Cohesive(bond_fracture_energy=ENERGY, bond_crushing=RC, crushing_hardening=0.25, **BRITTLE)
+
+
+def test_crushing_takes_its_strength_times_the_shortening():
+    """Up to three times the elastic limit, back to where the force vanishes, and to the limit again."""
+    limit = RC / KN
+    un = np.array([0.0, -limit, -3 * limit, -2 * limit, -2.5 * limit, -4 * limit])
+    Fn, _ = CRUSHING.drive(un, 0 * un)
+    assert Fn == pytest.approx([0.0, -RC, -RC, 0.0, -0.5 * RC, -RC], abs=1e-6 * RC)
+    path = np.linspace(0.0, -3 * limit, 301)
+    Fn, _ = CRUSHING.drive(path, 0 * path)
+    assert work(Fn, path) == pytest.approx(RC * 2 * limit + 0.5 * RC * limit, rel=1e-4)
+
+
+def test_crushing_hardens_with_what_stays():
+    """Three limits of compression: of the two beyond the elastic one, 4/5 stay and 1/5 is more force."""
+    limit = RC / KN
+    un = np.linspace(0.0, -3 * limit, 301)
+    Fn, _ = HARDENING.drive(un, 0 * un)
+    assert Fn[-1] == pytest.approx(-1.4 * RC) and work(Fn, un) == pytest.approx(0.5 * RC * limit + 2.4 * RC * limit)
+    bond = HARDENING.initial_state()
+    for opening in un.tolist():
+        HARDENING.respond(bond, opening, (0.0,))
+    assert bond.un_plastic == pytest.approx(-1.6 * limit)
+    assert HARDENING.respond(bond, -2.9 * limit, (0.0,))[0] == pytest.approx(-1.3 * RC)
+    assert HARDENING.respond(bond, -3 * limit - 1e-12, (0.0,))[0] == pytest.approx(-1.4 * RC)
+
+
+def test_a_crushed_bond_holds_from_where_its_force_vanishes():
+    limit, bond = RC / KN, CRUSHING.initial_state()
+    CRUSHING.respond(bond, -3 * limit, (0.0,))
+    assert CRUSHING.respond(bond, -2 * limit + 0.5 * ONSET, (0.0,))[0] == pytest.approx(0.5 * RN)
+    CRUSHING.respond(bond, -2 * limit + 1.01 * END, (0.0,))
+    assert bond.broken and bond.un_plastic == pytest.approx(-2 * limit)
+    # Broken, it presses from there on, and crushes at the same force.
+    for un, force in ((-1.9 * limit, 0.0), (-2.5 * limit, -0.5 * RC), (-4 * limit, -RC), (-3.5 * limit, -0.5 * RC)):
+        assert CRUSHING.respond(bond, un, (0.0,))[0] == pytest.approx(force, abs=1e-6 * RC)
+
+
+def test_bonds_within_grains_crush_and_never_break():
+    bond = (inner := CRUSHING.scaled(0.3).unbreakable(kn=2 * KN, kt=KT)).initial_state()
+    assert inner.respond(bond, -1.0, (0.0,))[0] == pytest.approx(-0.3 * RC) and CRUSHING.kn == KN
+    assert CRUSHING.unbreakable(kn=KN, kt=KT).coupling == 0
+    Fn, (Ft,) = inner.respond(bond, 1.0, (1.0,))
+    assert Fn == pytest.approx(2 * KN * (1.0 - bond.un_plastic)) and Ft == pytest.approx(KT) and not bond.broken
+
+
 @pytest.mark.parametrize("law, lengths", [(COULOMB, 2.5), (COHESIVE, 1.0)], ids=["coulomb", "cohesive"])
 def test_scaled_by_area(law, lengths):
     """Forces grow with the area. Coulomb's displacements do too; those at the end of softening stay, for the energy
@@ -230,7 +279,8 @@ def test_scaled_by_area(law, lengths):
 
 
 @pytest.mark.parametrize("name, bad", [("bond_tension", 0.0), ("bond_cohesion", -1.0), ("mu", -0.1),
-                                       ("bond_fracture_energy", 0.0), ("bond_fracture_energy", math.inf)])
+                                       ("bond_fracture_energy", 0.0), ("bond_fracture_energy", math.inf),
+                                       ("bond_crushing", -1.0)])
 def test_refusals_name_the_parameter(name, bad):
     with pytest.raises(ParameterError, match=f"^{name} = "):
         Cohesive(**{**BRITTLE, "bond_fracture_energy": ENERGY, name: bad})

@@ -12,7 +12,7 @@ def checks(tmp_path_factory):
 
 
 def test_programme_of_the_monograph_for_every_law(checks):
-    assert len(checks["programme"]) == 8
+    assert len(checks["programme"]) == 9
     for kinds in checks["programme"].values():
         assert len(kinds) == 6 and max(kinds.values()) < 1e-12
 
@@ -24,7 +24,7 @@ def test_random_paths_in_the_plane(checks):
 def test_random_paths_in_space_with_shear_in_two_directions(checks):
     assert max(checks["space"].values()) < 3e-6
     # Here nothing is found again from normals.
-    assert checks["space"]["cohesive"] < 1e-13
+    assert checks["space"]["cohesive"] < 1e-13 and checks["space"]["crushing"] < 1e-13
 
 
 def test_the_order_of_the_ids_changes_nothing(checks):
@@ -83,6 +83,23 @@ def test_opening_and_slip_take_the_same_strength(checks):
     assert found["4000 steps, 1"]["force"] < 0.3 * found["1000 steps, 1"]["force"]
 
 
+def test_crushing_takes_its_work_and_leaves_a_contact(checks):
+    """Crushed, pulled apart to the end while still nearer than it was, crushed again while it slides."""
+    for period, error in (("1", 1e-3), ("10", 3e-3)):
+        found = checks["crushed"][period]
+        assert found["force"] < 0.1 * error and abs(found["energy"]) < error and abs(found["crushed"]) < 2e-3
+        assert found["cracks"] == 1 and found["status"] == 1
+
+
+def test_crushing_hardens_late_by_a_look(checks):
+    """Errors of the first order in the time between looks; harder, the pair is shortened too little to break."""
+    found = checks["hardening"]
+    for case, error in (("1000 steps, 1", 1e-2), ("4000 steps, 1", 2.5e-3), ("4000 steps, 10", 2.5e-2)):
+        assert found[case]["force"] < 0.2 * error and abs(found[case]["energy"]) < error
+        assert abs(found[case]["crushed"]) < error and found[case]["cracks"] == 0
+    assert found["4000 steps, 1"]["force"] < 0.3 * found["1000 steps, 1"]["force"]
+
+
 def test_the_work_of_slip_goes_to_the_two_particles_in_halves(checks):
     found = checks["slip by particle"]
     assert found["halves"] == pytest.approx([0.5, 0.5], rel=1e-12) and found["left"] == 0
@@ -106,6 +123,7 @@ def test_a_resumed_bond_is_equal_bit_for_bit(checks):
         assert found["difference"] == 0 and found["largest"] > 1e4
     assert 0.1 < checks["resuming"]["cohesive"]["softened"]
     assert 0.1 < checks["resuming"]["damaged by slip"]["softened"] < 1
+    assert checks["resuming"]["crushing"]["softened"] == 1
 
 
 def test_an_engine_broken_on_purpose_is_noticed(checks):

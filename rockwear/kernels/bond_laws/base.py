@@ -177,12 +177,16 @@ class BondLaw(ABC):
 
     def _contact(self, bond, un, ut):
         """Unilateral contact with Coulomb friction [Rojek 2003, eqs 4.5-4.6]; open: Fn = 0, and all shear is slip."""
-        Fn = min(self.kn * (un - bond.un_plastic), 0.0)
+        Fn = min(self._normal(bond, un), 0.0)
         Ft = self._shear(bond, Fn, ut)
         norm, limit = math.hypot(*Ft), self.mu * abs(Fn)
         if norm > limit:
             Ft = self._slip(bond, ut, Ft, limit / norm)
         return Fn, Ft
+
+    def _normal(self, bond, un):
+        """Elastic normal force of a contact after breakage, negative in compression."""
+        return self.kn * (un - bond.un_plastic)
 
     @staticmethod
     def _slip(bond, ut, Ft, kept):

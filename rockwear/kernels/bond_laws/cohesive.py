@@ -1,11 +1,13 @@
-"""Bond with fracture energies: softening in tension, and in shear by Coulomb slip."""
+"""Bond with fracture energies and crushing: softening in tension, in shear by Coulomb slip, plastic in compression."""
 import math
 
 from rockwear.kernels.bond_laws.base import KN, KT, MU, LinearBondLaw
 from rockwear.kernels.bond_laws.coulomb import COHESION, TENSION
-from rockwear.kernels.checks import not_negative, positive
-from rockwear.kernels.parameter import Parameter, number, plausible
+from rockwear.kernels.checks import not_negative, positive, within
+from rockwear.kernels.parameter import Parameter, number, plausible, zero_or
 
+UNBREAKABLE = 1e30
+"""Strength (N) of bonds that are not to break at all."""
 BRITTLEST = 1.001
 """Least opening at the end of softening, over that at the peak."""
 
@@ -24,11 +26,17 @@ def softening_energy(softening, *, Rn, onset, gone):
 
 
 class Cohesive(LinearBondLaw):
-    """Tension softens linearly with a fracture energy, shear slips at Coulomb's limit.
+    """Tension softens linearly with a fracture energy, shear slips at Coulomb's limit, compression may crush.
 
     Tension is [Rojek 2003, eqs 4.17-4.19] driven by opening alone: with u0 = Rn/kn, uf = 2 G/Rn and the largest opening
-    so far u, omega = (1 - u0/u)/(1 - u0/uf) and Fn = (1 - omega) kn un; compression is elastic. Shear is elastic up to
-    |Ft| = c Rt - mu Fn (Fn positive in tension) [Bahaaddini 2018, eqs 2-4] and slips there.
+    so far u, omega = (1 - u0/u)/(1 - u0/uf) and Fn = (1 - omega) kn un; compression is elastic up to Rc. Shear is
+    elastic up to |Ft| = c Rt - mu Fn (Fn positive in tension) [Bahaaddini 2018, eqs 2-4] and slips there.
+
+    With a crushing strength, compression flows at Fn = -(Rc - h kn up): un is then counted from where the force
+    vanishes, un - up, and up falls. It stands for grains that break and pores that collapse (Zhang, Wong & Davis,
+    1990), which lets rock give way under a tip without opening a crack beside it; the hardening h keeps particles from
+    passing through one another. Bonds crush before and after they break; contacts between particles that have parted do
+    not.
 
     Without a shear energy, slip does not damage, and c = 1 - omega: this is the published part of YADE's concrete model
     (Law2_ScGeom_CpmPhys_Cpm, damLaw 0), which carries it in C++. But 1 - omega is the part of the stiffness that is
@@ -45,6 +53,7 @@ class Cohesive(LinearBondLaw):
     kn, kt  N/m, > 0      mu  friction within the bond and after breakage, >= 0
     bond_tension, bond_cohesion  Pa, bond_fracture_energy (G)  J/m2, all > 0: of a bond that stands for 1 m2 of crack,
     see Coulomb; a low cohesion does not cut the tension here. bond_shear_energy (G2)  J/m2; 0: slip does not damage.
+    bond_crushing (Rc)  Pa; 0: nothing crushes. crushing_hardening (h)  slope over kn against what stays, 0 to 1.
     Elastic energies Rn^2/(2 kn) and Rt^2/(2 kt) are lower bounds of G and G2. Raises ParameterError.
     """
 
@@ -56,14 +65,32 @@ class Cohesive(LinearBondLaw):
                             "work to break a bond in tension, over its area"),
                   Parameter("bond_shear_energy", 0.0, "J/m2", number(0, 1e6),
                             "work to break a bond in shear without normal force, over its area; 0: slip does not "
-                            "damage bonds"), MU)
+                            "damage bonds"),
+                  Parameter("bond_crushing", 0.0, "Pa", zero_or(1e4, 1e12),
+                            "compression at which grains crush, over a bond's area; 0: never"),
+                  Parameter("crushing_hardening", 0.1, "", number(0, 1),
+                            "slope of the crushing strength over what a bond is shorter, over kn"), MU)
 
-    def __init__(self, *, kn, kt, bond_tension, bond_cohesion, bond_fracture_energy, mu, bond_shear_energy=0.0):
+    def __init__(self, *, kn, kt, bond_tension, bond_cohesion, bond_fracture_energy, mu, bond_shear_energy=0.0,
+                 bond_crushing=0.0, crushing_hardening=0.1):
         super().__init__(kn=kn, kt=kt, Rn=positive("bond_tension", bond_tension, "Pa"),
                          Rt=positive("bond_cohesion", bond_cohesion, "Pa"), H=math.inf, mu=mu)
         self.end = 2 * positive("bond_fracture_energy", bond_fracture_energy, "J/m2") / self.Rn
         energy = not_negative("bond_shear_energy", bond_shear_energy, "J/m2")
         self.end_of_slip = 2 * energy / self.Rt if energy else math.inf
+        self.Rc = not_negative("bond_crushing", bond_crushing, "Pa") or math.inf
+        self.hardening = within("crushing_hardening", crushing_hardening, 0, 1)
+
+    def scaled(self, factor):
+        law = super().scaled(factor)
+        law.Rc = self.Rc * factor
+        return law
+
+    def unbreakable(self, *, kn, kt):
+        """The law of a bond of this size within a grain: it crushes, and does not break. kn, kt: N/m."""
+        law = self.scaled(1.0)
+        law.kn, law.kt, law.Rn, law.Rt, law.end_of_slip = kn, kt, UNBREAKABLE, UNBREAKABLE, math.inf
+        return law
 
     @property
     def onset(self):
@@ -107,14 +134,23 @@ class Cohesive(LinearBondLaw):
         """|Ft| (N) at which a bond of this omega slips under the normal force Fn (N)."""
         return max(self.strength_left(softening) * self.Rt - self.mu * Fn, 0.0)
 
+    def crushing_force(self, un_plastic):
+        """N at which a bond that is shorter by -un_plastic (m) for good crushes on."""
+        return self.Rc - self.hardening * self.kn * un_plastic
+
+    def _normal(self, bond, un):
+        if self.kn * (un - bond.un_plastic) < -self.crushing_force(bond.un_plastic):
+            bond.un_plastic = (un + self.Rc / self.kn) / (1.0 + self.hardening)
+        return super()._normal(bond, un)
+
     def _bonded(self, bond, un, ut):
-        omega, u0 = bond.softening, self.onset
-        if un > u0:
-            omega = max(omega, (1.0 - u0 / un) / (1.0 - u0 / self.gone))
+        omega, u0, opening = bond.softening, self.onset, un - bond.un_plastic
+        if opening > u0:
+            omega = max(omega, (1.0 - u0 / opening) / (1.0 - u0 / self.gone))
             if omega >= 1.0:
                 return None
             bond.softening = omega
-        Fn = self.kn * un * (1.0 - omega if un > 0.0 else 1.0)
+        Fn = self._normal(bond, un) * (1.0 - omega if opening > 0.0 else 1.0)
         Ft = self._shear(bond, Fn, ut)
         norm, limit = math.hypot(*Ft), self.shear_limit(omega, Fn)
         if norm > limit:

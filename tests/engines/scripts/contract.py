@@ -383,15 +383,20 @@ class NowhereLinear(Tension):
 
 
 class Softening(Tension):
-    """The same with bonds that YADE's concrete model carries, and dashpots: at the checkpoint some soften and some
-    slip."""
+    """The same with bonds that YADE's concrete model carries, and dashpots, its inner particles driven against one
+    another: at the checkpoint some bonds soften, some slip, some are crushed."""
 
     law = Cohesive(kn=KN, kt=KT, mu=MU, bond_tension=RN, bond_cohesion=0.3 * RN, bond_fracture_energy=1.0,
-                   bond_shear_energy=0.5)
+                   bond_shear_energy=0.5, bond_crushing=0.05 * RN)
 
     def __init__(self):
         super().__init__()
         self.rock.laws = [self.law] * len(self.rock.pairs)
+
+    def _begin(self):
+        super()._begin()
+        for i in set(range(self.rock.count)) - {*self.left, *self.right}:
+            O.bodies[i].state.vel = (0, 30.0 * (-1)**i, 0)
 
     def event(self, last):
         # As a heat engine does.

@@ -29,9 +29,8 @@ def contacts():
     for contact in found:
         for vector in VECTORS.values():
             write(vector(contact), (0.0, 0.0, 0.0))
-    omega, cohesion = cpm_bonds._behind_slip()
     places = memory.Places(COUNT, vectors=VECTORS, groups=cpm_bonds._GROUPS,
-                           numbers={"omega": ("slipped", omega), "cohesion": ("slipped", cohesion)})
+                           numbers={name: ("slipped", behind) for name, behind in cpm_bonds._behind_slip().items()})
     places.find(np.array([4, 5, 6]), found[4:])
     places.find(np.arange(4), found[:4])
     return found, places
@@ -64,7 +63,7 @@ def read_and_written():
 
 
 def behind():
-    """{what: numbers from memory, numbers from Python} of omega and the cohesion, and of a cohesion that is written."""
+    """{what: numbers from memory, numbers from Python} of omega, cohesion and epsNPl, and of those that are written."""
     found, places = contacts()
     for k, contact in enumerate(found):
         phys = contact.phys
@@ -77,7 +76,9 @@ def behind():
 
     pairs = {"omega": both("omega", "omega"), "cohesion": both("cohesion", "undamagedCohesion")}
     places.write("cohesion", numbers, np.array([3.0, 4.0]))
-    return {**pairs, "written": ([3.0, 4.0], both("cohesion", "undamagedCohesion")[1])}
+    places.write("crushed", numbers, np.array([-0.3, -0.4]))
+    return {**pairs, "written": ([3.0, 4.0], both("cohesion", "undamagedCohesion")[1]),
+            "crushed": both("crushed", "epsNPl"), "crushed, written": ([-0.3, -0.4], both("crushed", "epsNPl")[1])}
 
 
 def together():
