@@ -38,10 +38,10 @@ LOAD = 0.1
 IN_TENSION = 1
 """Mode of a crack (cracks.csv) on which more work was spent in tension than in slip."""
 
-ROCK = dict(rock="interlocked_sandstone")
+ROCK = dict(rock="crushing_sandstone")
 CUT = dict(depth_of_cut=5e-3, discs_per_depth=16, rake=-5.0, velocity=8.0, snapshot_period=5e-4, cut_length=0.06)
-LONG, SHORT = 0.115, 0.03
-"""m of way in the first packing of the base, which are twenty depths of cut that count, and with small discs."""
+SHORT = 0.03
+"""m of way with small discs."""
 BOX = dict(width=0.02, height=0.01)
 """Of the laboratory, m; loaded along its length; as much larger or smaller as the discs are."""
 SPEEDS = {"compression": 0.04, "tension": 0.02}
@@ -51,14 +51,16 @@ ROCKS = {
     BASE: ROCK,
     EIGHT: dict(ROCK, discs_per_depth=8),
     FINEST: dict(ROCK, discs_per_depth=32),
-    "no grains": dict(ROCK, grain_edge=0.0),
-    "shear energy 3000": dict(ROCK, bond_shear_energy=3000.0, bond_cohesion=7e6),
-    "strengths halved": dict(ROCK, bond_tension=1.5e6, bond_cohesion=4.25e6, bond_fracture_energy=22.5,
-                             bond_shear_energy=250.0),
-    "Weibull modulus 2": dict(ROCK, weibull_modulus=2.0),
-    "fracture energy 30": dict(ROCK, bond_fracture_energy=30.0),
-}
-"""Rocks that are cut as the base is. More shear energy makes a rock stronger: there the cohesion is lower."""
+    **{f"{EIGHT}, {name}": dict(ROCK, discs_per_depth=8, **change) for name, change in {
+        "no crushing": dict(bond_crushing=0.0),
+        "crushing 100 MPa": dict(bond_crushing=100e6),
+        "crushing 250 MPa": dict(bond_crushing=250e6),
+        "no grains": dict(grain_edge=0.0),
+        "strengths halved": dict(bond_tension=1.5e6, bond_cohesion=4.25e6, bond_fracture_energy=22.5,
+                                 bond_shear_energy=250.0, bond_crushing=75e6),
+        "Weibull modulus 2": dict(weibull_modulus=2.0),
+        "fracture energy 30": dict(bond_fracture_energy=30.0)}.items()}}
+"""Rocks that are cut as the base is."""
 CHANGES = {
     "wear flat 1 mm": dict(wear_flat=1e-3),
     "wear flat 2 mm": dict(wear_flat=2e-3),
@@ -87,7 +89,7 @@ COLUMNS = {"specific energy / UCS": "energy", "mean Fc, kN/m": "force", "peak / 
            "overbreak / depth": "overbreak", "chip length / depth": "chip", "mean Fn, kN/m": "pressed",
            "thrust / cutting": "thrust",
            "friction work, kN/m": "friction", "way under load": "loaded", "work in bonds": "bonds",
-           "in tension": "tension"}
+           "in tension": "tension", "in crushing": "crushing"}
 """{heading: quantity}."""
 
 
@@ -103,7 +105,7 @@ def rock_of(case):
 
 def cut_of(case, seed):
     """Parameters of a cut."""
-    length = {(BASE, SEEDS[0]): dict(cut_length=LONG), (FINEST, seed): dict(cut_length=SHORT)}.get((case, seed), {})
+    length = dict(cut_length=SHORT) if case == FINEST else {}
     return {**CUT, **length, **ROCKS[rock_of(case)], **CUTS.get(case, {}), "seed": seed, "report": "false"}
 
 
@@ -166,7 +168,8 @@ def of_run(run):
             "friction": scaled(steady_record.mean(distance, friction, begin), 1e-3),
             "loaded": under_load(distance, cutting, peaks.mean().value, begin),
             "bonds": Measured(energy["bond_breaking"] / energy["tool_work"], math.nan),
-            "tension": Measured(float(work[mode == IN_TENSION].sum()) / energy["tool_work"], math.nan)}
+            "tension": Measured(float(work[mode == IN_TENSION].sum()) / energy["tool_work"], math.nan),
+            "crushing": Measured(energy["rock_crushing"] / energy["tool_work"], math.nan)}
 
 
 def under_load(distance, cutting, peak, begin):
@@ -319,7 +322,7 @@ def write(folder):
     lines = ["## Causes, one at a time", "", f"Mean ± standard error: of the packings where there are three, else of "
              f"the cuts' own records, from {BEGIN} depths of cut on. Way under load: part of the way with a cutting "
              f"force above {LOAD:g} of the mean peak. Work in bonds: part of the tool's work that bonds take "
-             "in slip and damage, and those alone that broke in tension. Energy missed: residual of the balance over "
+             "in slip and damage, those alone that broke in tension, and in crushing. Energy missed: residual of the balance over "
              "the tool's work, of the worst packing. Minutes on a shared core.", "", *causes(found)]
     if judged := envelope(folder, found):
         lines += ["## Against the envelope", "",
