@@ -68,11 +68,11 @@ class Cohesive(LinearBondLaw):
                             "damage bonds"),
                   Parameter("bond_crushing", 0.0, "Pa", zero_or(1e4, 1e12),
                             "compression at which grains crush, over a bond's area; 0: never"),
-                  Parameter("crushing_hardening", 0.1, "", number(0, 1),
+                  Parameter("crushing_hardening", 0.05, "", number(0, 1),
                             "slope of the crushing strength over what a bond is shorter, over kn"), MU)
 
     def __init__(self, *, kn, kt, bond_tension, bond_cohesion, bond_fracture_energy, mu, bond_shear_energy=0.0,
-                 bond_crushing=0.0, crushing_hardening=0.1):
+                 bond_crushing=0.0, crushing_hardening=0.05):
         super().__init__(kn=kn, kt=kt, Rn=positive("bond_tension", bond_tension, "Pa"),
                          Rt=positive("bond_cohesion", bond_cohesion, "Pa"), H=math.inf, mu=mu)
         self.end = 2 * positive("bond_fracture_energy", bond_fracture_energy, "J/m2") / self.Rn
