@@ -46,7 +46,7 @@ setup-test: setup
 
 # Wear is accelerated so that the tip wears away within a cut of 20 mm instead of kilometres.
 run: setup ## cut a sandstone steadily, the tip wearing; report in out/steady_cut/report.html
-	yade -n -x -j1 yade_scripts/steady_cut.py --rock interlocked_sandstone --discs_per_depth 16 \
+	yade -n -x -j1 yade_scripts/steady_cut.py --rock crushing_sandstone --discs_per_depth 16 \
 	  --cut_length 0.02 --velocity 8 --heat true --wear_acceleration 5e3 --out $(OUT)/steady_cut
 
 test: setup-test ## all tests

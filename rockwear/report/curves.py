@@ -8,7 +8,7 @@ from rockwear.report.plots import legend, running_mean, working_hours
 
 FORCES = {"cutting_force": palette.CUTTING, "thrust_force": palette.THRUST, "side_force": palette.SIDEWAYS}
 ENERGIES = {"tool_work": palette.WORK, "kinetic_energy": palette.MOTION, "tool_friction": palette.FRICTION,
-            "bond_breaking": palette.BREAKING}
+            "bond_breaking": palette.BREAKING, "rock_crushing": palette.CRUSHING}
 CRACKS = {"tensile_cracks": palette.TENSILE, "shear_cracks": palette.SHEAR}
 TEMPERATURES = {"tool_temperature_max": palette.TOOL_HEAT, "rock_temperature_max": palette.ROCK_HEAT}
 LABELS = {"tool_temperature_max": "hottest of the tool", "rock_temperature_max": "hottest of the rock"}

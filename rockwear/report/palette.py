@@ -25,7 +25,7 @@ TRAVEL, DISPLACEMENT, DIMENSIONLESS = colormaps["YlOrBr"], colormaps["viridis"],
 
 # Lines of quantities that stand for the same everywhere.
 CUTTING, THRUST, SIDEWAYS = "#b5651d", "#2c6e91", "#8a8a8a"
-WORK, MOTION, FRICTION, BREAKING = "#444444", "#b5651d", "#2c6e91", CRACK
+WORK, MOTION, FRICTION, BREAKING, CRUSHING = "#444444", "#b5651d", "#2c6e91", CRACK, "#7a6a9c"
 TENSILE, SHEAR = CRACK, "#2c6e91"
 WORN, MASS_LOST = CRACK, "#444444"
 TOOL_HEAT, ROCK_HEAT, HOTTEST_PART, MEAN_HEAT, COOLED = CRACK, "#b5651d", "#e08a1e", "#444444", "#2c6e91"

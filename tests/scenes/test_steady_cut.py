@@ -14,7 +14,9 @@ SMALL = dict(window_behind=0.016, window_ahead=0.048, window_height=0.026, radiu
 """A steady cut in miniature."""
 LAWS = {"brittle": dict(seed=2),
         "softening": dict(bond_law="cohesive", kt=8e9, rotation="blocked", mu=0.3, weibull_modulus=4, heat="true",
-                          control_radius=2.5)}
+                          control_radius=2.5),
+        "crushing": dict(bond_law="cohesive", kt=8e9, grain_edge=2.4e-3, bond_crushing=6e7, bond_tension=3e6,
+                         bond_cohesion=8.5e6, bond_shear_energy=500.0)}
 
 
 def steady_cut(out, *flags, **values):
@@ -38,6 +40,7 @@ def test_the_window_moves_and_the_balance_closes(never):
     # The work of slip in softening bonds is sampled: few of them slip here.
     part = 0.03 if "bond_law" in never.options else 0.02
     assert abs(energy["residual"]) < part * energy["tool_work"]
+    assert (energy["rock_crushing"] > 0.05 * energy["tool_work"]) == ("bond_crushing" in never.options)
     assert history(never.out)["distance [m]"][-1] == pytest.approx(SMALL["cut_length"], abs=2e-4)
     assert value(never, "window_passed") >= 4 * (SMALL["window_behind"] + SMALL["window_ahead"]) / 16
     if "control_radius" in never.options:

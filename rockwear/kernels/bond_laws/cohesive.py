@@ -35,8 +35,9 @@ class Cohesive(LinearBondLaw):
     With a crushing strength, compression flows at Fn = -(Rc - h kn up): un is then counted from where the force
     vanishes, un - up, and up falls. It stands for grains that break and pores that collapse (Zhang, Wong & Davis,
     1990), which lets rock give way under a tip without opening a crack beside it; the hardening h keeps particles from
-    passing through one another. Bonds crush before and after they break; contacts between particles that have parted do
-    not.
+    passing through one another. Pressed from all sides alike, rock whose bonds all crush carries pi/4 of bond_crushing
+    in the plane, 2/3 in space. Bonds crush before and after they break; contacts between particles that have parted
+    do not.
 
     Without a shear energy, slip does not damage, and c = 1 - omega: this is the published part of YADE's concrete model
     (Law2_ScGeom_CpmPhys_Cpm, damLaw 0), which carries it in C++. But 1 - omega is the part of the stiffness that is
