@@ -324,8 +324,8 @@ def write(folder):
     lines = ["## Causes, one at a time", "", f"Mean ± standard error: of the packings where there are three, else of "
              f"the cuts' own records, from {BEGIN} depths of cut on. Way under load: part of the way with a cutting "
              f"force above {LOAD:g} of the mean peak. Work in bonds: part of the tool's work that bonds take "
-             "in slip and damage, those alone that broke in tension, and in crushing. Energy missed: residual of the balance over "
-             "the tool's work, of the worst packing. Minutes on a shared core.", "", *causes(found)]
+             "in slip and damage, those alone that broke in tension, and in crushing. Energy missed: residual of the "
+             "balance over the tool's work, of the worst packing. Minutes on a shared core.", "", *causes(found)]
     if judged := envelope(folder, found):
         lines += ["## Against the envelope", "",
                   *generated.table(["cut", "", "range", "basis", "ours", "verdict"], [*judged, *relations(found)])]

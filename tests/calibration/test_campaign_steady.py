@@ -22,8 +22,8 @@ def test_the_plan_changes_one_cause_at_a_time_and_measures_every_rock():
         for seed in steady_cut.SEEDS:
             assert f"cut/{steady_cut.slug(case, seed)}" in plan
             assert f"lab/{steady_cut.slug(steady_cut.rock_of(case), 'compression', seed)}" in plan
-    script, values = plan["cut/no_grains-2"]
-    changed = {name for name in values if values[name] != steady_cut.cut_of("base", 2).get(name)}
+    script, values = plan["cut/eight_discs__no_grains-2"]
+    changed = {name for name in values if values[name] != steady_cut.cut_of("eight discs", 2).get(name)}
     assert changed == {"grain_edge"}
     assert [name.rpartition("-")[0] for name in plan][:9:3] == ["cut/base"] * 3
 
@@ -43,7 +43,7 @@ def test_what_comes_before_the_end_of_the_slope_does_not_count(tmp_path):
     assert found["thrust"].value == pytest.approx(THRUST / FORCE)
     assert found["friction"].value == pytest.approx(1e-3 * FRICTION)
     assert found["overbreak"].value == pytest.approx(0.4) and found["chip"].value == pytest.approx(2.0)
-    assert found["bonds"].value == 0.5 and found["tension"].value == 0.1
+    assert (found["bonds"].value, found["tension"].value, found["crushing"].value) == (0.5, 0.1, 0.3)
 
 
 def test_the_way_under_load_is_not_known_without_peaks():
@@ -60,7 +60,7 @@ def test_specific_energy_is_over_the_strength_of_the_same_rock(tmp_path):
     row = steady_cut.of_case(tmp_path, "base")
     assert row["ucs"].value == pytest.approx(50.0) and row["energy"].value == pytest.approx(FORCE / DEPTH / 50e6)
     assert row["packings"] == 1 and row["way"] == pytest.approx(9) and row["cost"] == pytest.approx(2 / 0.065)
-    assert steady_cut.of_case(tmp_path, "no grains") is None
+    assert steady_cut.of_case(tmp_path, "eight discs, no grains") is None
     line, = (line for line in steady_cut.causes({"base": row}) if "| base | 1 | 9 | 50" in line)
     assert line.endswith("| 5.0 | 31 |")
 
@@ -122,8 +122,8 @@ def write(folder, results, **entries):
 
 def write_run(folder):
     """A cut with constant forces after the slope, and others before."""
-    write(folder, {}, balances={"energy": {"tool_work": 2.0, "bond_breaking": 1.0, "residual": -0.1}},
-          wall_time={"total": 120.0})
+    energy = {"tool_work": 2.0, "bond_breaking": 1.0, "rock_crushing": 0.6, "residual": -0.1}
+    write(folder, {}, balances={"energy": energy}, wall_time={"total": 120.0})
     distance = np.linspace(0, 0.06, 601)
     early = distance < steady_cut.BEGIN * DEPTH
     rows(folder / "history.csv", "distance cutting_force thrust_force tool_friction", distance,
