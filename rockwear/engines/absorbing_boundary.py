@@ -2,6 +2,7 @@
 import numpy as np
 from yade import O, Subdomain, Vector3, ViscElMat, utils
 
+from rockwear.engines.access import IN_PLANE, IN_PLANE_WITHOUT_TURNING
 from rockwear.engines.base import Engine
 from rockwear.kernels.checks import require
 from rockwear.kernels.viscous_spring import stable_dashpots, viscous_spring
@@ -10,14 +11,12 @@ SUPPORT_RADIUS = 1e4
 """Radius of a support over that of its particle: their line keeps its direction, and its spring its linearity."""
 MATERIAL = "absorbing boundary"
 IDLE_PLACE = Vector3(0, 0, 1e9)
-FREE, HELD = "zXY", "zXYZ"
-"""Blocked degrees of freedom of particles in the plane."""
 NO_SLIP = 1e9
 """Coefficient of friction of a support."""
 FOLLOWED = 0.5
 """Way of a particle along the normal, over its radius, from which its support begins anew where it then is."""
-COLUMNS = ("numbers", "supports", "places", "normals", "forces", "kn", "kt", "cn", "ct")
-"""What is kept of each held particle."""
+COLUMNS = ("numbers", "supports", "radii", "places", "normals", "forces", "kn", "kt", "cn", "ct")
+"""What is kept of each held particle. Its radius is that at which it was held; heat may change it later."""
 
 
 class AbsorbingBoundary(Engine):
@@ -46,7 +45,7 @@ class AbsorbingBoundary(Engine):
         self.moduli, self.density, self.step, self.critical = moduli, density, step, critical
         self.numbers, self.supports, self.idle = (np.empty(0, int) for _ in range(3))
         self.places, self.normals, self.forces = (np.empty((0, 2)) for _ in range(3))
-        self.kn, self.kt, self.cn, self.ct = (np.empty(0) for _ in range(4))
+        self.radii, self.kn, self.kt, self.cn, self.ct = (np.empty(0) for _ in range(5))
         self.absorbed = self.followed = self.power = 0.0
 
     def connect(self):
@@ -77,7 +76,8 @@ class AbsorbingBoundary(Engine):
         exerted += self._release(held)
         start = len(self.numbers)
         states = self._states(held)
-        new = (held, self._supports(len(held)), states[:, :2], normals, exerted, *total)
+        radii = [O.bodies[number].shape.radius for number in held.tolist()]
+        new = (held, self._supports(len(held)), radii, states[:, :2], normals, exerted, *total)
         for column, values in zip(COLUMNS, new):
             setattr(self, column, np.concatenate([getattr(self, column), values]))
         added = range(start, len(self.numbers))
@@ -86,7 +86,8 @@ class AbsorbingBoundary(Engine):
         self._set_forces(added)
         for number in held.tolist():
             # What spin it has is lost.
-            O.bodies[number].state.blockedDOFs, O.bodies[number].state.angVel = HELD, Vector3.Zero
+            state = O.bodies[number].state
+            state.blockedDOFs, state.angVel = IN_PLANE_WITHOUT_TURNING, Vector3.Zero
         self.power = self._power()
 
     def release(self, numbers):
@@ -105,7 +106,7 @@ class AbsorbingBoundary(Engine):
         for k, number in enumerate(numbers.tolist()):
             exerted[k] = now.get(number, 0.0)
         for k in gone.tolist():
-            O.bodies[int(self.numbers[k])].state.blockedDOFs = FREE
+            O.bodies[int(self.numbers[k])].state.blockedDOFs = IN_PLANE
             # The loop would make the contact again, as one of rock on rock, if the two still met.
             O.bodies[int(self.supports[k])].state.pos = IDLE_PLACE
             O.interactions.erase(int(self.numbers[k]), int(self.supports[k]))
@@ -119,8 +120,7 @@ class AbsorbingBoundary(Engine):
         """Move the supports of particles that have gone far along the normal, so that they touch at the centre again:
         what the springs exert by then becomes constant."""
         along, _ = self._split(self._moved())
-        radii = np.array([self._radius(k) for k in range(len(along))])
-        far = np.flatnonzero(np.abs(along) > FOLLOWED * radii)
+        far = np.flatnonzero(np.abs(along) > FOLLOWED * self.radii)
         if not len(far):
             return
         before, way = self._energies()[far].sum(), along[far, None] * self.normals[far]
@@ -144,7 +144,7 @@ class AbsorbingBoundary(Engine):
 
     def _connect_support(self, k):
         particle, support = O.bodies[int(self.numbers[k])], O.bodies[int(self.supports[k])]
-        radius = particle.shape.radius
+        radius = float(self.radii[k])
         support.shape.radius = SUPPORT_RADIUS * radius
         support.state.pos = particle.state.pos + Vector3(*self.normals[k], 0) * ((SUPPORT_RADIUS - 1) * radius)
         before, particle.mat = particle.mat, O.materials[MATERIAL]
@@ -153,13 +153,9 @@ class AbsorbingBoundary(Engine):
         phys.kn, phys.ks, phys.cn, phys.cs = (float(getattr(self, name)[k]) for name in ("kn", "kt", "cn", "ct"))
         phys.tangensOfFrictionAngle = NO_SLIP
 
-    def _radius(self, k):
-        """m of the particle when it was held; heat may have changed it since."""
-        return O.bodies[int(self.supports[k])].shape.radius / SUPPORT_RADIUS
-
     def _set_forces(self, held):
         for k in held:
-            constant = self.forces[k] + 2 * self._radius(k) * self.kn[k] * self.normals[k]
+            constant = self.forces[k] + 2 * self.radii[k] * self.kn[k] * self.normals[k]
             O.forces.setPermF(int(self.numbers[k]), Vector3(*constant, 0))
         # Else a step right after one of YADE's loop goes without permanent forces.
         O.forces.f(0, sync=True)

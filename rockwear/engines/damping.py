@@ -3,10 +3,8 @@ import math
 
 from yade import O, utils
 
+from rockwear.engines.access import FIXED
 from rockwear.engines.base import Engine
-
-FIXED = "xyzXYZ"
-"""Blocked degrees of freedom of bodies that do not move by themselves."""
 
 
 class BackgroundDamping(Engine):

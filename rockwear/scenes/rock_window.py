@@ -2,13 +2,11 @@
 import numpy as np
 from yade import O, Quaternion, Vector3
 
-from rockwear.engines.access import rock_states
+from rockwear.engines.access import FIXED, IN_PLANE, rock_states
 from rockwear.engines.bond_log import INTACT
 from rockwear.model.rock_mass import WHOLE
 from rockwear.scenes import yade_scene
 
-FREE = "zXY"
-HELD = "xyzXYZ"
 MOST_LATE = 2.0
 """Slabs by which the window follows late while rock that entered would not fit."""
 FITS = 5e-5
@@ -25,12 +23,12 @@ class FixedBoundary:
         """Hold these particles (k,); all else counts for nothing here, see AbsorbingBoundary."""
         for n in numbers.tolist():
             state = O.bodies[n].state
-            state.blockedDOFs, state.vel, state.angVel = HELD, Vector3.Zero, Vector3.Zero
+            state.blockedDOFs, state.vel, state.angVel = FIXED, Vector3.Zero, Vector3.Zero
 
     def release(self, numbers):
         """Hold these particles no more."""
         for n in numbers.tolist():
-            O.bodies[n].state.blockedDOFs = FREE
+            O.bodies[n].state.blockedDOFs = IN_PLANE
 
 
 class RockWindow:
@@ -63,7 +61,7 @@ class RockWindow:
         self._hold_bottom(np.flatnonzero(self.rock.anchored & ~self.rock.absent))
         self._hold_sides()
         for n in np.flatnonzero(self.rock.absent).tolist():
-            O.bodies[n].state.blockedDOFs = HELD
+            O.bodies[n].state.blockedDOFs = FIXED
 
     def distance(self, place):
         """m that a tool whose tip is at `place` (2,) m has gone."""
@@ -102,9 +100,9 @@ class RockWindow:
         bottom = moved[rock.anchored[moved]]
         self.boundary.release(np.concatenate([bottom, in_the_way]))
         there = ~rock.absent[moved]
-        self._put(moved[there], (rock.places[moved] + displacement)[there], FREE)
+        self._put(moved[there], (rock.places[moved] + displacement)[there], IN_PLANE)
         for aside in (moved[~there], in_the_way):
-            self._put(aside, rock.places[aside], HELD)
+            self._put(aside, rock.places[aside], FIXED)
         # YADE's loop would find contacts of supports anew, as of rock.
         O.interactions.eraseNonReal()
         left = np.isin(rock.pairs, [*moved, *in_the_way]).any(axis=1)

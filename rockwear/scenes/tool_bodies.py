@@ -59,7 +59,7 @@ class ToolBodies:
         for index, (x, y) in zip(indices, places):
             body = self._body(int(index), x, y)
             state = body.state
-            state.blockedDOFs, state.isDamped = "xyzXYZ", False
+            state.blockedDOFs, state.isDamped = access.FIXED, False
             self._set_off(int(index), state, x, y, origin, velocity)
             state.angVel = (0.0, 0.0, self.angular_velocity)
             state.ori = Quaternion((0, 0, 1), self.pose.turn)

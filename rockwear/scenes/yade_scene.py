@@ -70,7 +70,7 @@ def put_rock(rock):
         particle = finite_disc if len(position) == 2 else sphere
         body = particle(position, radius, material="bonding rock", mask=SIDE_MASKS[side], mass=mass, inertia=inertia)
         if fixed:
-            body.state.blockedDOFs = "xyzXYZ"
+            body.state.blockedDOFs = access.FIXED
         O.bodies.append(body)
 
 
@@ -180,7 +180,7 @@ def bond_again(rock, numbers):
 def finite_disc(position, radius, *, material, mask, mass, inertia):
     """A disc of unit thickness: a YADE sphere that stays in the plane, with a disc's mass and inertia."""
     body = sphere((*position, 0.0), radius, material=material, mask=mask, mass=mass, inertia=inertia)
-    body.state.blockedDOFs = "zXY"
+    body.state.blockedDOFs = access.IN_PLANE
     return body
 
 

@@ -87,6 +87,9 @@ def test_rock_at_rest_stays_at_rest_while_the_window_moves_on(law, tmp_path):
     assert found["cracks"] == 0 and abs(found["late"]) < 1e-15
     assert found["bonds"] == found["whole"] and found["bonds"][-1] == found["interactions"]
     assert found["left"] < 1e-12
+    # Held particles do not turn, absent ones do not move, and all others do.
+    held, absent, others = found["freedom"]
+    assert held == ["zXYZ"] and absent in ([], ["xyzXYZ"]) and others == ["zXY"]
 
 
 @pytest.mark.parametrize("values, words", [
