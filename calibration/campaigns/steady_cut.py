@@ -63,6 +63,9 @@ ROCKS = {
         "Weibull modulus 2": dict(weibull_modulus=2.0),
         "fracture energy 30": dict(bond_fracture_energy=30.0)}.items()}}
 """Rocks that are cut as the base is."""
+HALVED = f"{EIGHT}, strengths halved"
+PULLED = BASE, HALVED
+"""Rocks that are pulled in the laboratory, too; the others have the bonds of the base."""
 CHANGES = {
     "wear flat 1 mm": dict(wear_flat=1e-3),
     "wear flat 2 mm": dict(wear_flat=2e-3),
@@ -84,7 +87,7 @@ CUTS = {**{f"{EIGHT}, {name}": change for name, change in CHANGES.items()},
 """How else the rock that a case begins with is cut, or that of the base."""
 DRAWN = {BASE: "steady_cut", FINEST: "steady_cut_finest"}
 """{case: name of its figures}."""
-JUDGED = BASE, EIGHT, FINEST, f"{EIGHT}, depth 2.5 mm", f"{EIGHT}, depth 10 mm"
+JUDGED = BASE, EIGHT, FINEST, HALVED, f"{EIGHT}, depth 2.5 mm", f"{EIGHT}, depth 10 mm"
 CASES = [BASE, *[name for name in ROCKS if name != BASE], *CUTS]
 
 COLUMNS = {"specific energy / UCS": "energy", "mean Fc, kN/m": "force", "peak / mean": "peaks",
@@ -129,7 +132,7 @@ def plan(cases):
                              key=lambda job: (job[0] != BASE, job[1], CASES.index(job[0]))):
         rock = rock_of(case)
         found[f"cut/{slug(case, seed)}"] = SCRIPT, cut_of(case, seed)
-        for test in SPEEDS if rock == BASE else ["compression"]:
+        for test in SPEEDS if rock in PULLED else ["compression"]:
             found[f"lab/{slug(rock, test, seed)}"] = UNIAXIAL, test_of(rock, test, seed)
     return found
 
@@ -233,12 +236,12 @@ def causes(found):
 
 
 def envelope(folder, found):
-    """Rows of a table: cuts of JUDGED against what is expected of a rock of their strengths. (Tension is that of the
-    base; the bonds are the same.)"""
-    tension, rows = strengths(folder, BASE, "tension"), []
-    for case in JUDGED if len(tension) else ():
-        row = found.get(case)
-        if not row or not math.isfinite(row["ucs"].value):
+    """Rows of a table: cuts of JUDGED against what is expected of a rock of their strengths."""
+    rows = []
+    for case in JUDGED:
+        rock = rock_of(case)
+        row, tension = found.get(case), strengths(folder, rock if rock in PULLED else BASE, "tension")
+        if not row or not len(tension) or not math.isfinite(row["ucs"].value):
             continue
         depth = CUTS.get(case, CUT).get("depth_of_cut", CUT["depth_of_cut"])
         ours = {"mean_cutting_force": (row["force"], 1e-3, "kN/m"), "peak_over_mean": (row["peaks"], 1, ""),
