@@ -11,10 +11,10 @@ from calibration.benchmarks import one_curve
 from calibration.campaigns.runs import RunFailed, run_script
 
 ERRORS = {"wear": "wear", "tip temperature": "tip temperature", "tool_friction": "friction work at the tool",
-          "rock_friction": "friction work in the rock", "slip in bonds": "work of slip in bonds",
-          "bond_breaking": "energy that bonds dissipate"}
+          "rock_friction": "friction work in the rock", "slip in bonds": "work of slip in bonds, and of crushing",
+          "bond_breaking": "energy that bonds dissipate, but in crushing", "rock_crushing": "work of crushing"}
 """{what the runs count: words}."""
-WORK = "tool_friction", "rock_friction", "slip in bonds", "bond_breaking"
+WORK = "tool_friction", "rock_friction", "slip in bonds", "bond_breaking", "rock_crushing"
 """Those that are J."""
 
 

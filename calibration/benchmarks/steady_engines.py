@@ -22,7 +22,7 @@ from rockwear.run import parameters, servers
 from rockwear.run.main import COMMON
 from rockwear.scenes import steady_cut
 
-CUT = dict(rock="interlocked_sandstone", discs_per_depth=16, velocity=8.0, cut_length=0.03, rake=-5.0, clearance=5.0,
+CUT = dict(rock="crushing_sandstone", discs_per_depth=16, velocity=8.0, cut_length=0.03, rake=-5.0, clearance=5.0,
            tip_radius=5e-4, tool_kn=1e10, tool_kt=1e10, contact_damping=0.2, heat=True, wear_acceleration=5e3)
 """That of `make run`, with the defaults of its script."""
 BEGIN, TIMED = 0.01, 0.01
@@ -43,7 +43,7 @@ def books(scene):
     balance, heat = scene.output.energy_balance(), scene.heat
     heat.act()
     return {**{name: balance[name] for name in ("tool_work", "tool_friction", "rock_friction", "bond_breaking",
-                                                "residual")},
+                                                "rock_crushing", "residual")},
             "slip in bonds": float(scene.bonds.by_slip.sum()), "wear": scene.tool.volume_balance()["archard"],
             "tip temperature": float(heat.tool_temperature().max() - scene.heat_model.tool_temperature),
             "kinetic energy": utils.kineticEnergy()}

@@ -54,8 +54,9 @@ STEADY = Group("motion", (
     Parameter("begin_angle", 20.0, "deg", number(5, 90), "slope on which the rock rises ahead of the tool at first, as "
               "behind a chip; 90: as the face of the tool"),
     parameters.DAMPING, *parameters.OTHER_DAMPING))
-GROUPS = [WINDOW, parameters.BONDS, parameters.PLANE_TOOL, parameters.CONTACT, STEADY, parameters.WEAR,
-          parameters.HEAT, parameters.ACCURACY, parameters.DENSITY_MAP]
+GROUPS = parameters.with_defaults([
+    WINDOW, parameters.BONDS, parameters.PLANE_TOOL, parameters.CONTACT, STEADY, parameters.WEAR, parameters.HEAT,
+    parameters.ACCURACY, parameters.DENSITY_MAP], rock_sampling_period=7)
 
 
 def groups(**defaults):

@@ -73,8 +73,9 @@ held = np.isin(np.arange(scene.rock.count), scene.boundary.numbers)
 blocked = np.array([O.bodies[n].state.blockedDOFs for n in range(scene.rock.count)])
 freedom = [sorted(set(blocked[which].tolist()))
            for which in (held, scene.rock.absent, ~held & ~scene.rock.absent)]
-found = {"freedom": freedom, "late": late, "kinetic": moving, "elastic": stored["elastic"], "cracks": len(scene.bonds.cracks),
-         "bonds": bonds, "whole": whole, "interactions": among_rock, "left": left / scene.rock.radii.mean()}
+found = {"late": late, "kinetic": moving, "elastic": stored["elastic"], "cracks": len(scene.bonds.cracks),
+         "bonds": bonds, "whole": whole, "interactions": among_rock, "left": left / scene.rock.radii.mean(),
+         "freedom": freedom}
 with open(file, "w", encoding="utf-8") as out:
     json.dump(found, out)
 os._exit(0)
