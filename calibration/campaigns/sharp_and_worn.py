@@ -27,8 +27,8 @@ from rockwear.scenes.parameters import OF_ROCK
 
 SHAPES = 3
 """Number of outlines, the new one included."""
-SEEDS = 1, 2, 3
-"""Packings that every tool cuts."""
+SEEDS = 1, 2, 3, 5, 6, 7
+"""Packings that every tool cuts; in the fourth it wears."""
 CUT = {**steady_cut.CUT, **steady_cut.ROCKS[steady_cut.EIGHT], "report": "false"}
 RAKE = CUT.pop("rake")
 WORN = {**CUT, "rake": RAKE, "seed": 4, "heat": "true", "wear_acceleration": 3000, "snapshot_period": 1e-4}
