@@ -18,7 +18,7 @@ import numpy as np
 from calibration import generated
 from calibration.campaigns import steady_cut
 from calibration.campaigns.runs import PLACEMENT, Runs, placement, wait_for
-from rockwear.kernels import cutting_theory
+from rockwear.kernels import cutting_theory, steady_record
 from rockwear.model import rock_file
 from rockwear.report import plots
 from rockwear.report.bodies import tool_loops
@@ -98,6 +98,17 @@ def figure(tools):
     return drawn
 
 
+def differences(tools):
+    """Rows of a table: how much more each worn tool has than the new one in the same packings, which scatters less."""
+    new, rows = tools[0]["each"], []
+    for tool in tools[1:]:
+        more = {name: [one[name].value - new[seed][name].value for seed, one in tool["each"].items() if seed in new]
+                for name in QUANTITIES}
+        rows.append([f"{1e6 * tool['lost']:.2f} mm²", *(
+            steady_cut.shown(steady_record.sample_mean(values)) for values in more.values())])
+    return rows
+
+
 def write(folder, tools):
     """The figure, and the tables as sharp_and_worn.md and .csv. -> the text of the first."""
     with matplotlib.rc_context(plots.STYLE):
@@ -113,7 +124,9 @@ def write(folder, tools):
         "Mean ± standard error of the packings, from three depths of cut on. The effective rake is that of "
         "the line from the lowest point to the front at the rock's surface; Evans takes it, and the rock's strength in "
         "tension, for the peak of a sharp tool.", "",
-        *generated.table(["area lost", "effective rake", "packings", *QUANTITIES.values(), "Evans"], rows)])
+        *generated.table(["area lost", "effective rake", "packings", *QUANTITIES.values(), "Evans"], rows),
+        "More than the new tool in the same packing:", "",
+        *generated.table(["area lost", *QUANTITIES.values()], differences(tools))])
 
 
 def shapes(folder):

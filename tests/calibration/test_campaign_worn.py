@@ -9,6 +9,7 @@ import pytest
 from calibration.campaigns import sharp_and_worn
 from calibration.campaigns.runs import finished
 from rockwear.kernels.polygon import area
+from rockwear.kernels.steady_record import Measured
 from rockwear.report.folder import RunFolder
 
 from tests.running import ROOT
@@ -47,7 +48,8 @@ def test_worn_shapes_cut_fresh_rock(campaign):
         assert np.array_equal(*(cut.model["rock_radii"] for cut in cuts))
         assert all(cut.result("worn_volume") < 0.01 * lost for cut in cuts)
     text = (folder / "sharp_and_worn.md").read_text(encoding="utf-8")
-    assert text.count("mm² |") == 2 and (folder / "sharp_and_worn.png").exists()
+    # New and worn, and how they differ.
+    assert text.count("mm² |") == 3 and (folder / "sharp_and_worn.png").exists()
 
 
 def test_finished_runs_stay_and_another_shape_is_cut_again(campaign):
@@ -60,6 +62,15 @@ def test_finished_runs_stay_and_another_shape_is_cut_again(campaign):
     assert finished(cut, {"outline": outline})
     outline.write_text(outline.read_text(encoding="utf-8").replace("\n", "\n ", 2), encoding="utf-8")
     assert not finished(cut, {"outline": outline})
+
+
+def test_differences_are_taken_in_the_same_packing():
+    def tool(lost, forces):
+        return {"lost": lost, "each": {seed: {name: Measured(force, 9.0) for name in sharp_and_worn.QUANTITIES}
+                                       for seed, force in forces.items()}}
+    new, worn = tool(0.0, {1: 30.0, 2: 50.0, 3: 90.0}), tool(1e-6, {1: 41.0, 2: 60.0, 3: 99.0, 5: 7.0})
+    (lost, *found), = sharp_and_worn.differences([new, worn])
+    assert lost == "1.00 mm²" and found == ["10 ± 0.58"] * len(sharp_and_worn.QUANTITIES)
 
 
 @pytest.mark.parametrize("rake", [-30, 0, 20])
