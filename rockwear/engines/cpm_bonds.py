@@ -282,13 +282,14 @@ class CpmBonds(BondLog):
         self.rising = self._weakened(rising[(omega[rises] < 1.0) & (self.coupling[rising] > 0.0)])
         for n in gone.tolist():
             interaction, _, phys = self.contacts[n]
-            self._log(n)
             if interaction.isReal:
+                self._log(n)
                 # Beyond omega = 1 a cohesive bond would push where it should pull.
                 phys.isCohesive, self.status[n] = False, BROKEN
             else:
                 # Its last shear force went with it: YADE leaves that of the step before.
                 self._dissipate(n, 0.5 * phys.shearForce.squaredNorm() / self.kt[n], True)
+                self._log(n)
                 self._separate(n)
 
     def _damage(self, numbers, slip, forces):
