@@ -270,7 +270,7 @@ class SpecimenOutput(Output):
         return {"time": (self.scene.time, "s"), "stage": (self.scene.stage, "-"), "stress": (self.scene.stress, "Pa"),
                 "unbalanced_stress": (difference / self.scene.section, "Pa"), "axial_strain": (axial, "-"),
                 "lateral_strain": (lateral, "-"), "platen_strain": (travel, "-"),
-                "bond_breaking": (self.scene.bonds.energy_released, self.energy)}
+                "bond_breaking": (self.scene.bonds.energy_breaking, self.energy)}
 
     def found(self, columns):
         """{name: (value, unit)} that the history's columns show, the test's own results."""
@@ -298,7 +298,7 @@ class SpecimenOutput(Output):
         balance = {source: works[source], **{f"against_{name}": -works[name] for name in others}}
         balance.update({name: now - self.scene.base[name] for name, now in self.scene.stored_energy().items()})
         balance.update(rock_friction=self.scene.rock_friction.total,
-                       bond_breaking=self.scene.bonds.energy_released - self.scene.bonds.energy_crushed,
+                       bond_breaking=self.scene.bonds.energy_breaking,
                        rock_crushing=self.scene.bonds.energy_crushed, numerical_damping=self._damped())
         return {"energy": (with_residual(balance, source), self.energy)}
 

@@ -35,6 +35,11 @@ class BondLog(Engine):
         self.parted = []
         """Numbers of the bonds that have separated since `RockContacts` took note of them."""
 
+    @property
+    def energy_breaking(self):
+        """J that bonds dissipated, but in crushing."""
+        return self.energy_released - self.energy_crushed
+
     def begin(self, there):
         """Only these bonds (m,) bool are there at first; the others may be made later."""
         self.status[~there] = SEPARATED

@@ -21,7 +21,7 @@ class CutOutput(Output):
         contact = scene.tool.contact
         balance = {"tool_work": contact.work_done, **scene.energy.changes(), "tool_friction": contact.friction,
                    "rock_friction": scene.rock_friction.total, "contact_dashpots": contact.dashpot_dissipated,
-                   "bond_breaking": scene.bonds.energy_released - scene.bonds.energy_crushed,
+                   "bond_breaking": scene.bonds.energy_breaking,
                    "rock_crushing": scene.bonds.energy_crushed,
                    "background_damping": scene.damping.dissipated if scene.damping else 0.0,
                    "removed_contacts": scene.tool.removed_energy}
@@ -65,7 +65,7 @@ class CutOutput(Output):
         if scene.in_plane:
             columns["kinetic_energy"] = utils.kineticEnergy(), joule
         return {**columns, "tool_friction": (contact.friction, joule),
-                "bond_breaking": (scene.bonds.energy_released - scene.bonds.energy_crushed, joule),
+                "bond_breaking": (scene.bonds.energy_breaking, joule),
                 "rock_crushing": (scene.bonds.energy_crushed, joule)}
 
     def model(self):
