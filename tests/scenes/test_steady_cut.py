@@ -90,6 +90,8 @@ def test_rock_at_rest_stays_at_rest_while_the_window_moves_on(law, tmp_path):
     # Held particles do not turn, absent ones do not move, and all others do.
     held, absent, others = found["freedom"]
     assert held == ["zXYZ"] and absent in ([], ["xyzXYZ"]) and others == ["zXY"]
+    # What lies where rock enters is taken out, whether the boundary held it or not.
+    assert found["in_the_way"] == [2, *[[True, "xyzXYZ", False, 0]] * 2]
 
 
 @pytest.mark.parametrize("values, words", [

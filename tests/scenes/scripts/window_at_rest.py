@@ -50,7 +50,7 @@ for k in range(2 * SLABS):
         whole.append(int(scene.rock.bonded.sum()))
 stored = scene.stored_energy()
 among_rock = sum(i.isReal and max(i.id1, i.id2) < scene.rock.count for i in O.interactions)
-moving = utils.kineticEnergy()
+moving, cracks = utils.kineticEnergy(), len(scene.bonds.cracks)
 late = scene.programme.path_time() * scene.time_scale - scene.time
 
 
@@ -73,9 +73,25 @@ held = np.isin(np.arange(scene.rock.count), scene.boundary.numbers)
 blocked = np.array([O.bodies[n].state.blockedDOFs for n in range(scene.rock.count)])
 freedom = [sorted(set(blocked[which].tolist()))
            for which in (held, scene.rock.absent, ~held & ~scene.rock.absent)]
-found = {"late": late, "kinetic": moving, "elastic": stored["elastic"], "cracks": len(scene.bonds.cracks),
+
+# Particles that have parted lie where rock enters: one of them held by the boundary, one not.
+rock = scene.rock
+middle = rock.slab == (rock.passed + SLABS // 2) % SLABS
+parted = [int(np.flatnonzero(middle & which)[0]) for which in (held, ~held)]
+for k, body in enumerate(parted):
+    x, y = rock.strip.place(np.array([[rock.end + 0.4 * rock.slab_length, (0.3 + 0.4 * k) * rock.height]]))[0]
+    O.bodies[body].state.pos = (x, y, 0.0)
+O.dt = 1e-12
+O.step()
+scene.canonical()
+cleared = window.cleared
+window.advance()
+in_the_way = [window.cleared - cleared, *(
+    [bool(rock.absent[n]), str(O.bodies[n].state.blockedDOFs), n in scene.boundary.numbers,
+     len(O.interactions.withBody(n))] for n in parted)]
+found = {"late": late, "kinetic": moving, "elastic": stored["elastic"], "cracks": cracks,
          "bonds": bonds, "whole": whole, "interactions": among_rock, "left": left / scene.rock.radii.mean(),
-         "freedom": freedom}
+         "freedom": freedom, "in_the_way": in_the_way}
 with open(file, "w", encoding="utf-8") as out:
     json.dump(found, out)
 os._exit(0)
