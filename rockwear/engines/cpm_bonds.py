@@ -39,11 +39,12 @@ _VECTORS = {"normal": lambda contact: contact.geom.normal, "increment": lambda c
             "shear_force": lambda contact: contact.phys.shearForce,
             "strain": lambda contact: contact.phys.epsT, "slipped": lambda contact: contact.phys.epsTPl}
 """Vectors of a bond that looks read, and partly write, for many bonds at once."""
-_GROUPS = {"slip": ("slipped", "shear_force"), "damage": ("slipped", "omega"),
+_GROUPS = {"slip": ("slipped", "shear_force"), "looked_at": ("slipped", "omega", "crushed"),
+           "limits": ("onset", "fracture"), "damage": ("omega", "kappa"),
            "forces": ("normal", "normal_force", "shear_force"), **crushing.GROUPS}
 """What is read together."""
-SLIPPED, SHEAR, OMEGA = slice(0, 3), slice(3, 6), 3
-"""Rows of the groups "slip" and "damage"."""
+SLIPPED, SHEAR, OMEGA, CRUSHED = slice(0, 3), slice(3, 6), 3, 4
+"""Rows of the groups "slip" and "looked_at"."""
 
 
 @cache
@@ -90,6 +91,13 @@ def _take_slip(places, numbers, normal, force, stiffness):
     places.write("strain", numbers, elastic)
     places.write("slipped", numbers, 0.0)
     return np.sqrt(_dot(slip, slip))
+
+
+def _set_damage(places, numbers, omega):
+    """CpmPhys.setDamage of many bonds that can break: their damage (k,), and the strain from which on it rises."""
+    onset, fracture = places.read("limits", numbers)
+    strain = onset / (1.0 - omega * (1.0 - onset / fracture))
+    places.write("damage", numbers, (omega, np.where(omega > 0.0, strain, 0.0)))
 
 
 class CpmBonds(BondLog):
@@ -165,9 +173,8 @@ class CpmBonds(BondLog):
         self._follow(np.flatnonzero(self.status != SEPARATED))
         if self.strains is not None:
             numbers, omegas, strains, slipped, crushed = self.strains
-            for n, omega in zip(numbers.tolist(), omegas.tolist()):
-                if omega:
-                    self.contacts[n].phys.setDamage(omega)
+            damaged = omegas > 0.0
+            _set_damage(self.places, numbers[damaged], omegas[damaged])
             self.places.write("strain", numbers, strains)
             self.places.write("slipped", numbers, slipped)
             self.places.write("crushed", numbers, crushed)
@@ -242,11 +249,11 @@ class CpmBonds(BondLog):
                 if not self.contacts[n].interaction.isReal:
                     self._separate(n)
         there = np.flatnonzero(self.status != SEPARATED)
+        now = self.places.read("looked_at", there)
         if self.crushing.possible:
-            numbers, work = self.crushing.harden(there, self.places.read("crushed", there)[0], self.lengths)
+            numbers, work = self.crushing.harden(there, now[CRUSHED], self.lengths)
             self.energy_crushed += float(np.sum(work))
             self._dissipate(numbers, work, True)
-        now = self.places.read("damage", there)
         omega, let_go = now[OMEGA], self.active[there]
         let_go[let_go] = _vanish(self.places.read("shear_force", there[let_go]))
         changed = np.flatnonzero((omega != self.omega[there]) | ~_vanish(now[SLIPPED]) | let_go)
@@ -311,13 +318,11 @@ class CpmBonds(BondLog):
             fallen = numbers[falls]
             self._dissipate(fallen, 0.5 * (Ft[falls]**2 - limit[falls]**2) / self.kt[fallen], True)
             self.places.write("shear_force", fallen, shear[:, falls] * (limit[falls] / Ft[falls]))
-        for n, damage in zip(numbers.tolist(), omega.tolist()):
-            phys = self.contacts[n].phys
-            phys.setDamage(damage)
-            self.omega[n] = phys.omega
-            if damage == SPENT:
-                self._log(n)
-                self.status[n] = BROKEN
+        self.omega[numbers] = omega
+        _set_damage(self.places, numbers, omega)
+        for n in numbers[omega == SPENT].tolist():
+            self._log(n)
+            self.status[n] = BROKEN
 
     def _dissipate(self, numbers, work, by_slip):
         self.dissipated[numbers] += work
@@ -349,8 +354,8 @@ class CpmBonds(BondLog):
         kept = np.array([body is not None for body in map(O.bodies.__getitem__, range(int(self.pairs.max()) + 1))])
         for n in np.flatnonzero(~kept[self.pairs].all(axis=1)).tolist():
             self._separate(n)
-        for n in np.flatnonzero(self.omega * (self.status != SEPARATED)).tolist():
-            self.contacts[n].phys.setDamage(self.contacts[n].phys.omega)
+        damaged = np.flatnonzero(self.omega * (self.status != SEPARATED))
+        _set_damage(self.places, damaged, self.places.read("omega", damaged)[0])
         # A restart does not know them, and until the next look some of them may leave.
         self.rising = self._weakened(np.zeros(0, int))
         self._prepare()
