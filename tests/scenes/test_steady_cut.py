@@ -92,6 +92,8 @@ def test_rock_at_rest_stays_at_rest_while_the_window_moves_on(law, tmp_path):
     assert held == ["zXYZ"] and absent in ([], ["xyzXYZ"]) and others == ["zXY"]
     # What lies where rock enters is taken out, whether the boundary held it or not.
     assert found["in_the_way"] == [2, *[[True, "xyzXYZ", False, 0]] * 2]
+    # It is damped as all rock once it has come in again.
+    assert found["damped"] == pytest.approx([0.5, 0.5], rel=1e-3)
 
 
 @pytest.mark.parametrize("values, words", [

@@ -3,12 +3,14 @@
     yade -n -x window_at_rest.py LAW CHECKS.json      LAW: of bonds along a straight way; arc: the dredge's
 """
 import json
+import math
 import os
 import sys
 
 import numpy as np
 from yade import O, utils
 
+from rockwear.engines.damping import BackgroundDamping
 from rockwear.model.rock_mass import SLABS
 from rockwear.run import parameters
 from rockwear.scenes import dredging, steady_cut
@@ -89,9 +91,22 @@ window.advance()
 in_the_way = [window.cleared - cleared, *(
     [bool(rock.absent[n]), str(O.bodies[n].state.blockedDOFs), n in scene.boundary.numbers,
      len(O.interactions.withBody(n))] for n in parted)]
+
+# Background damping that began while they were absent: it damps them once they are rock again.
+damping = BackgroundDamping(rate=math.log(2.0) / O.dt, bodies=range(rock.count))
+damping.connect()
+while rock.absent[parted].any():
+    window.advance()
+for body in parted:
+    O.bodies[body].state.vel = (1.0, 0.0, 0.0)
+damping.elapsed()
+O.step()
+damping.act()
+damped = [O.bodies[body].state.vel[0] for body in parted]
 found = {"late": late, "kinetic": moving, "elastic": stored["elastic"], "cracks": cracks,
          "bonds": bonds, "whole": whole, "interactions": among_rock, "left": left / scene.rock.radii.mean(),
-         "freedom": freedom, "in_the_way": in_the_way}
+         "freedom": freedom, "in_the_way": in_the_way,
+         "damped": damped}
 with open(file, "w", encoding="utf-8") as out:
     json.dump(found, out)
 os._exit(0)
