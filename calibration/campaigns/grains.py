@@ -17,7 +17,7 @@ import matplotlib
 from calibration import generated
 from calibration.campaigns import grains_figures as figures
 from calibration.campaigns import grains_tables as tables
-from calibration.campaigns.runs import PLACEMENT, Runs, placement, wait_for
+from calibration.campaigns.runs import Runs, command_line, wait_for
 from calibration.campaigns.uniaxial_tables import write_csv
 from rockwear.model import rock_file
 from rockwear.report import plots
@@ -159,7 +159,5 @@ def main(folder, words, **where):
 
 
 if __name__ == "__main__":
-    where, words = placement(sys.argv[1:])
-    if not words:
-        sys.exit(f"usage: python3 -m calibration.campaigns.grains DIR [calibrated] [study] [--read] {PLACEMENT}")
-    sys.exit(main(Path(words[0]), words[1:], **where))
+    place, words, where = command_line(__spec__.name, CAMPAIGNS)
+    sys.exit(main(place, words, **where))

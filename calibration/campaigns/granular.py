@@ -6,12 +6,11 @@ into a tube over amplitude and frequency.
 Runs that finished are kept. Writes granular.md, granular.png and provenance.json into DIR.
 """
 import sys
-from pathlib import Path
 
 import numpy as np
 
 from calibration import generated
-from calibration.campaigns.runs import PLACEMENT, Runs, placement, wait_for
+from calibration.campaigns.runs import Runs, command_line, wait_for
 from rockwear.report import palette, plots
 
 HEAP, TUBE = "yade_scripts/angle_of_repose.py", "yade_scripts/vibrated_tube.py"
@@ -141,7 +140,5 @@ def main(folder, **where):
 
 
 if __name__ == "__main__":
-    place, words = placement(sys.argv[1:])
-    if len(words) != 1:
-        sys.exit(f"usage: python3 -m calibration.campaigns.granular DIR {PLACEMENT}")
-    sys.exit(main(Path(words[0]), **place))
+    place, _, where = command_line(__spec__.name, flags=())
+    sys.exit(main(place, **where))

@@ -77,5 +77,6 @@ def main(folder, words):
 if __name__ == "__main__":
     unknown = [word for word in sys.argv[2:] if word not in (*ROCKS, "--read")]
     if len(sys.argv) < 2 or unknown:
-        sys.exit(f"usage: python3 -m calibration.campaigns.library DIR [{'] ['.join(ROCKS)}] [--read]")
+        print(f"usage: python3 -m calibration.campaigns.library DIR [{'] ['.join(ROCKS)}] [--read]", file=sys.stderr)
+        sys.exit(2)
     sys.exit(main(Path(sys.argv[1]), sys.argv[2:]))

@@ -11,13 +11,12 @@ import csv
 import json
 import math
 import sys
-from pathlib import Path
 
 import matplotlib
 import numpy as np
 
 from calibration import generated
-from calibration.campaigns.runs import PLACEMENT, Runs, placement, wait_for
+from calibration.campaigns.runs import Runs, command_line, wait_for
 from rockwear.report import palette, plots
 from rockwear.report.folder import RunFolder
 
@@ -262,8 +261,5 @@ def main(folder, words, **where):
 
 
 if __name__ == "__main__":
-    where, words = placement(sys.argv[1:])
-    unknown = [word for word in words[1:] if word not in (*CASES, "--read")]
-    if not words or unknown:
-        sys.exit(f"usage: python3 -m calibration.campaigns.rock_laws DIR [{'] ['.join(CASES)}] [--read] {PLACEMENT}")
-    sys.exit(main(Path(words[0]), words[1:], **where))
+    place, words, where = command_line(__spec__.name, CASES)
+    sys.exit(main(place, words, **where))

@@ -208,6 +208,20 @@ def placement(words):
     return vars(found), others
 
 
+def command_line(campaign, cases=(), flags=("--read",)):
+    """(folder, the other words, {option of Runs: value}) of the command line DIR [CASE ...] [FLAG ...] [where to run].
+
+    campaign: a module's name; cases, flags: words that may follow the folder. Ends the program with exit code 2 and one
+    line where it cannot be used.
+    """
+    where, words = placement(sys.argv[1:])
+    if not words or set(words[1:]) - {*cases, *flags}:
+        usage = ["usage: python3 -m", campaign, "DIR", *(f"[{word}]" for word in (*cases, *flags)), PLACEMENT]
+        print(*usage, file=sys.stderr)
+        sys.exit(2)
+    return Path(words[0]), words[1:], where
+
+
 def add_placement(parser):
     """The options that say where runs run."""
     where = parser.add_mutually_exclusive_group()

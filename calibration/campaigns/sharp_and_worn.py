@@ -10,14 +10,13 @@ friction over the area lost, beside the peak by Evans' theory.
 import csv
 import math
 import sys
-from pathlib import Path
 
 import matplotlib
 import numpy as np
 
 from calibration import generated
 from calibration.campaigns import steady_cut
-from calibration.campaigns.runs import PLACEMENT, Runs, placement, wait_for
+from calibration.campaigns.runs import Runs, command_line, wait_for
 from rockwear.kernels import cutting_theory, steady_record
 from rockwear.model import rock_file
 from rockwear.report import plots
@@ -170,8 +169,5 @@ def main(folder, read=False, **where):
 
 
 if __name__ == "__main__":
-    where, words = placement(sys.argv[1:])
-    if not words or set(words[1:]) - {"--read"}:
-        print(f"usage: python3 -m calibration.campaigns.sharp_and_worn DIR [--read] {PLACEMENT}", file=sys.stderr)
-        sys.exit(2)
-    sys.exit(main(Path(words[0]), "--read" in words, **where))
+    place, words, where = command_line(__spec__.name)
+    sys.exit(main(place, "--read" in words, **where))

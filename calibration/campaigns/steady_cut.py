@@ -10,13 +10,12 @@ figures of the base, of the finest discs and over their number (steady_cut*.png)
 import csv
 import math
 import sys
-from pathlib import Path
 
 import matplotlib
 import numpy as np
 
 from calibration import generated
-from calibration.campaigns.runs import PLACEMENT, Runs, placement, wait_for
+from calibration.campaigns.runs import Runs, command_line, wait_for
 from rockwear.kernels import steady_record
 from rockwear.kernels.cut_sizes import cut_sizes
 from rockwear.kernels.cutting_envelope import (
@@ -365,8 +364,5 @@ def main(folder, words, **where):
 
 
 if __name__ == "__main__":
-    where, words = placement(sys.argv[1:])
-    unknown = [word for word in words[1:] if word not in (*CASES, "--read")]
-    if not words or unknown:
-        sys.exit(f"usage: python3 -m calibration.campaigns.steady_cut DIR [{'] ['.join(CASES)}] [--read] {PLACEMENT}")
-    sys.exit(main(Path(words[0]), words[1:], **where))
+    place, words, where = command_line(__spec__.name, CASES)
+    sys.exit(main(place, words, **where))

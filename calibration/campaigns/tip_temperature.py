@@ -11,12 +11,11 @@ SCENES lists for each scene its script, its values, and the temperatures (K) amo
 """
 import json
 import sys
-from pathlib import Path
 
 import numpy as np
 
 from calibration import generated
-from calibration.campaigns.runs import Runs, placement
+from calibration.campaigns.runs import Runs, command_line
 from rockwear.report import plots
 
 RIPPER = dict(velocities=0.4, wear_passes=0, report="false", snapshot_period=1, grading_factor=3)
@@ -128,5 +127,5 @@ def main(folder, quick, **where):
 
 
 if __name__ == "__main__":
-    where, words = placement(sys.argv[1:])
-    main(Path(words[0]), "--quick" in words, **where)
+    place, words, where = command_line(__spec__.name, flags=("--quick",))
+    main(place, "--quick" in words, **where)

@@ -16,7 +16,7 @@ import matplotlib
 from calibration import generated
 from calibration.campaigns import uniaxial_figures as figures
 from calibration.campaigns import uniaxial_tables as tables
-from calibration.campaigns.runs import PLACEMENT, Runs, placement, wait_for
+from calibration.campaigns.runs import Runs, command_line, wait_for
 from calibration.campaigns.uniaxial_tables import TESTS
 from rockwear.report import plots
 from rockwear.report.folder import RunFolder
@@ -229,8 +229,5 @@ def main(folder, words, **where):
 
 
 if __name__ == "__main__":
-    where, words = placement(sys.argv[1:])
-    unknown = [word for word in words[1:] if word not in (*CAMPAIGNS, "--read")]
-    if not words or unknown:
-        sys.exit(f"usage: python3 -m calibration.campaigns.uniaxial DIR [{'] ['.join(CAMPAIGNS)}] [--read] {PLACEMENT}")
-    sys.exit(main(Path(words[0]), words[1:], **where))
+    place, words, where = command_line(__spec__.name, CAMPAIGNS)
+    sys.exit(main(place, words, **where))

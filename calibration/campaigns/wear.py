@@ -7,13 +7,12 @@ interrupted campaign resumes: finished runs are kept, the others continue from t
 wear.md (tables), figures and provenance.json into DIR.
 """
 import sys
-from pathlib import Path
 
 import matplotlib
 import numpy as np
 
 from calibration import generated
-from calibration.campaigns.runs import RunFailed, Runs, placement
+from calibration.campaigns.runs import RunFailed, Runs, command_line
 from rockwear.kernels.wear_statistics import difference, middles
 from rockwear.report import page, plots, published
 from rockwear.report.folder import read_history
@@ -150,10 +149,7 @@ def main(folder, *names, **where):
 
     -> exit code; 1: a run failed.
     """
-    unknown = set(names) - set(CASES)
-    if unknown:
-        sys.exit(f"wear campaign: no such case: {', '.join(sorted(unknown))}; there are: {'; '.join(CASES)}")
-    folder, cases = Path(folder), {name: CASES[name] for name in names or CASES}
+    cases = {name: CASES[name] for name in names or CASES}
     with Runs(folder, keep=True, **where) as runs:
         waiting = {name: runs.start(name.replace(", ", "-").replace(" ", "_"), script, **{**COARSE, **values})
                    for name, (script, values) in cases.items()}
@@ -186,10 +182,8 @@ def main(folder, *names, **where):
 
 if __name__ == "__main__":
     matplotlib.use("Agg")
-    where, words = placement(sys.argv[1:])
-    if not words:
-        sys.exit(__doc__)
+    place, words, where = command_line(__spec__.name, CASES, flags=())
     try:
-        sys.exit(main(*words, **where))
+        sys.exit(main(place, *words, **where))
     except RunFailed as error:
         sys.exit(f"wear campaign: {error}")

@@ -62,9 +62,3 @@ def test_a_run_that_failed_shows_its_error_and_is_not_kept(tmp_path, monkeypatch
     assert campaign_wear.main(tmp_path) == 1
     assert "too_fast ended with 1: error: the tool's shape cannot follow its wear" in capsys.readouterr().err
     assert (tmp_path / "too_fast/summary.json").exists() and not finished(tmp_path / "too_fast", values)
-
-
-def test_unknown_cases_are_named(tmp_path):
-    with pytest.raises(SystemExit, match="no such case: ripper, 9"):
-        campaign_wear.main(tmp_path / "out", "ripper, 9")
-    assert not (tmp_path / "out").exists()

@@ -1,7 +1,5 @@
 """make campaign-worn in miniature: a tool wears, its outlines cut fresh rock, runs and tables are kept."""
 import csv
-import subprocess
-import sys
 
 import numpy as np
 import pytest
@@ -11,8 +9,6 @@ from calibration.campaigns.runs import finished
 from rockwear.kernels.polygon import area
 from rockwear.kernels.steady_record import Measured
 from rockwear.report.folder import RunFolder
-
-from tests.running import ROOT
 
 TINY = {**sharp_and_worn.CUT, "discs_per_depth": 4, "cut_length": 0.02, "snapshot_period": 5e-4}
 SEEDS = 2, 3
@@ -85,9 +81,3 @@ def test_the_theory_takes_the_strength_of_the_rock():
     # 2 σt d sin(45°) / (1 - sin(45°)), 3.83 MPa in tension.
     assert sharp == pytest.approx(2 * 3.827e3 * 5e-3 * np.sin(np.pi / 4) / (1 - np.sin(np.pi / 4)), rel=1e-3)
     assert blunt > sharp
-
-
-def test_a_folder_is_asked_for_in_one_line():
-    command = [sys.executable, "-m", "calibration.campaigns.sharp_and_worn"]
-    done = subprocess.run(command, cwd=ROOT, capture_output=True, encoding="utf-8")
-    assert done.returncode == 2 and done.stderr.startswith("usage: ") and done.stderr.count("\n") == 1

@@ -1,5 +1,8 @@
 """Runs that campaigns, benchmarks and validations start: kept, repeated or failed; their parameters are accepted."""
 import json
+import os
+import subprocess
+import sys
 
 import pytest
 
@@ -137,3 +140,15 @@ def test_a_finished_run_is_kept_only_for_the_same_files(tmp_path):
 def test_a_run_that_fails_says_so(tmp_path):
     with Runs(tmp_path) as runs, pytest.raises(RunFailed, match="bad ended with 2: error: sped = 1"):
         runs.start("bad", "yade_scripts/uniaxial.py", sped=1).result()
+
+
+@pytest.mark.parametrize("campaign, words", [
+    ("sharp_and_worn", []), ("tip_temperature", []), ("granular", ["DIR", "--read"]), ("library", []),
+    ("steady_cut", ["DIR", "no such case"]), ("wear", ["DIR", "ripper, 9"])])
+def test_a_campaign_without_a_folder_or_of_unknown_cases_is_refused_in_one_line(campaign, words, tmp_path):
+    command = [sys.executable, "-m", f"calibration.campaigns.{campaign}", *words]
+    done = subprocess.run(command, cwd=tmp_path, env={**os.environ, "PYTHONPATH": str(ROOT)}, capture_output=True,
+                          encoding="utf-8")
+    assert done.returncode == 2 and done.stderr.count("\n") == 1
+    assert done.stderr.startswith(f"usage: python3 -m calibration.campaigns.{campaign} DIR ")
+    assert not list(tmp_path.iterdir())
