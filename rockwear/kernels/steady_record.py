@@ -211,6 +211,12 @@ def steady_results(*, distance, cutting, thrust, friction_work, depth):
             "long_enough": (bool(settled and length >= LONG_ENOUGH * depth and len(found.force) >= ENOUGH_CHIPS), "-")}
 
 
+def uncertainty(found):
+    """Standard error of the mean cutting force over it, of what `steady_results` found; inf of too short a record."""
+    force, error = (found[name][0] for name in ("mean_cutting_force", "mean_cutting_force_standard_error"))
+    return error / force if found["long_enough"][0] and error < math.inf and force > 0 else math.inf
+
+
 def quotient(first, second):
     """Measured quotient of two independent means."""
     if not second.value:

@@ -14,7 +14,7 @@ from rockwear.kernels.groove import groove_results
 from rockwear.kernels.parameter import Group, Parameter, Presets, above_zero, choice, number, zero_or
 from rockwear.kernels.polygon import reach
 from rockwear.kernels.rigid_motion import Straight
-from rockwear.kernels.steady_record import steady_results, with_error
+from rockwear.kernels.steady_record import CELL, steady_results, uncertainty, with_error
 from rockwear.model.rock_mass import SLABS, RockMass
 from rockwear.scenes import parameters, parts
 from rockwear.scenes.cut import Cut
@@ -49,6 +49,8 @@ WINDOW = Group("rock", (
 STEADY = Group("motion", (
     *(p for p in parameters.CUT_MOTION if p.name != "approach"),
     Parameter("cut_length", 0.1, "m", above_zero, "way of the tool"),
+    Parameter("accuracy", 0.0, "", zero_or(1e-3, 1), "standard error of the mean cutting force over it: the cut ends "
+              "where it is as small, in a record that is long enough, or after cut_length; 0: after cut_length"),
     Parameter("ramp_length", 5e-3, "m", number(0), "way on which the tool comes to its velocity, from a groove that "
               "fits it"),
     Parameter("begin_angle", 20.0, "deg", number(5, 90), "slope on which the rock rises ahead of the tool at first, as "
@@ -81,7 +83,7 @@ def make(values):
     rock.leave_out(above_groove(rock, outline + [v.window_behind, path], path, math.radians(v.begin_angle)))
     record = CutRecord(rock=rock, start=(v.window_behind, path))
     programme = SteadyCut(
-        velocity=v.velocity * v.time_scale, cut_length=v.cut_length, ramp_length=v.ramp_length,
+        velocity=v.velocity * v.time_scale, cut_length=v.cut_length, ramp_length=v.ramp_length, accuracy=v.accuracy,
         start=(v.window_behind, path), record=record,
         window=RockWindow(rock=rock, behind=v.window_behind, held_below=v.window_height - 2 * v.depth_of_cut,
                           sides=v.boundary != "free", book=record.book))
@@ -123,15 +125,16 @@ def above_groove(rock, outline, path, slope):
 class SteadyCut(Programme):
     """A tool that comes up to its velocity in a groove that fits it and then cuts on at a constant depth.
 
-    velocity: m/s of the mechanics; cut_length, ramp_length: m; start: (2,) m, where the tool's origin begins; window:
-    RockWindow; record: CutRecord of what leaves it.
+    velocity: m/s of the mechanics; cut_length, ramp_length: m; accuracy: of the mean cutting force, at which the cut
+    ends before, 0: it does not; start: (2,) m, where the tool's origin begins; window: RockWindow; record: CutRecord of
+    what leaves it.
     """
 
-    def __init__(self, *, velocity, cut_length, ramp_length, start, window, record):
+    def __init__(self, *, velocity, cut_length, ramp_length, accuracy, start, window, record):
         super().__init__(Straight(start=start, velocity=(velocity, 0.0)), {"stage_names": np.array(["cut"])})
         self.origin = start
         self.velocity, self.cut_length, self.ramp_length = velocity, cut_length, ramp_length
-        self.window, self.record = window, record
+        self.accuracy, self.window, self.record = accuracy, window, record
         self.way, self.speed, self.since = 0.0, 0.0, 0
 
     def stages(self):
@@ -148,7 +151,10 @@ class SteadyCut(Programme):
         return self.way + self.speed * (O.iter - self.since) * self.scene.time_step
 
     def run(self):
-        self.way, self.since = self.distance, O.iter
+        before, self.way, self.since = self.way, self.distance, O.iter
+        if self._is_known(before):
+            self.scene.stages[self.scene.stage] = "cut", self.step
+            return True
         self.window.follow(self.way)
         self.since = O.iter
         ramp = 2 * self.ramp_length / self.velocity
@@ -158,6 +164,18 @@ class SteadyCut(Programme):
             self.speed = speed
             self.scene.tool.bodies.go_on((speed, 0.0))
         return False
+
+    def _is_known(self, before):
+        """Whether the mean force is known well enough; asked once in so many depths of cut. before: m, the way when it
+        was asked last."""
+        asked = CELL * self.scene.depth_of_cut
+        return self.accuracy > 0 and self.way // asked > before // asked and (
+            uncertainty(self._forces(self.scene.recorder.columns())) <= self.accuracy)
+
+    def _forces(self, columns):
+        return steady_results(distance=columns["distance"], cutting=columns["cutting_force"],
+                              thrust=columns["thrust_force"], friction_work=columns["tool_friction"],
+                              depth=self.scene.depth_of_cut)
 
     def log(self):
         return {"distance": (self.distance, "m")}
@@ -172,9 +190,7 @@ class SteadyCut(Programme):
     def results(self, columns):
         found = {}
         if columns:
-            found = steady_results(distance=columns["distance"], cutting=columns["cutting_force"],
-                                   thrust=columns["thrust_force"], friction_work=columns["tool_friction"],
-                                   depth=self.scene.depth_of_cut)
+            found = self._forces(columns)
             begin = found["transient"][0]
             (x, height), chips = (part[part[:, 0] > begin].T for part in self._record())
             found.update(groove_results(x=x, height=height, chip=found["peak_spacing"][0]))
@@ -184,7 +200,13 @@ class SteadyCut(Programme):
         return {**found, **self.window.results()}
 
     def warnings(self):
-        return self.window.warnings(self.scene.bonds.cracks)
+        found = self.window.warnings(self.scene.bonds.cracks)
+        known = uncertainty(self._forces(self.scene.recorder.columns())) if self.accuracy else 0.0
+        if known > self.accuracy:
+            far = f"to {100 * known:.0f} %" if known < math.inf else "not at all"
+            found.append(f"the mean cutting force is known {far}, and was to be to {100 * self.accuracy:g} %: a longer "
+                         "cut_length tells it")
+        return found
 
     def tables(self):
         groove, chips = self._record()

@@ -64,6 +64,19 @@ def test_segments_go_as_far_and_the_process_takes_as_long_as_it_is_slower(tmp_pa
     assert abs(run.summary["balances"]["energy"]["residual"]) < 0.02 * run.summary["balances"]["energy"]["tool_work"]
 
 
+def test_a_cut_ends_once_its_mean_force_is_known(tmp_path):
+    """Thin and fast, so that twenty depths are soon cut."""
+    fast = dict(depth_of_cut=2.5e-3, velocity=20.0, cut_length=0.2, accuracy=0.5, seed=3)
+    run = steady_cut(tmp_path / "out", **fast)
+    assert run.code == 0, run.stderr
+    assert value(run, "long_enough") and run.summary["ended"] == "finished"
+    known = value(run, "mean_cutting_force_standard_error") / value(run, "mean_cutting_force")
+    assert 0 < known <= 0.5 and 20 * 2.5e-3 < history(run.out)["distance [m]"][-1] < 0.19
+    assert abs(run.summary["balances"]["energy"]["residual"]) < 0.03 * run.summary["balances"]["energy"]["tool_work"]
+    again = steady_cut(tmp_path / "short", **{**fast, "cut_length": 0.01})
+    assert "the mean cutting force is known not at all, and was to be to 50 %" in again.stderr
+
+
 def test_sizes_follow_the_depth_of_cut_and_the_rock_follows_its_discs(tmp_path):
     given = dict(rock="interlocked_sandstone", depth_of_cut=4e-3, discs_per_depth=4, tooth_width=0.01, cut_length=0.02,
                  velocity=8.0, report="false")
