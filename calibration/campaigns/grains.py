@@ -32,8 +32,7 @@ CONFINEMENTS = 1e6, 5e6, 10e6
 STUDIED = 5e6
 """Pa, confinement of the parameter study [Bahaaddini 2018, sec. 4]."""
 SEEDS = tuple(range(61, 71))
-"""Packings that the rock was not calibrated on; the first CONFINED of them under confinement too."""
-CONFINED = 5
+"""Packings that the rock was not calibrated on."""
 STUDY_SEEDS = SEEDS[:2]
 
 
@@ -102,8 +101,6 @@ def planned(campaign):
     jobs = {}
     for seed in seeds:
         for test, (script, values) in which.items():
-            if "confinement" in values and seed not in SEEDS[:CONFINED]:
-                continue
             for (name, x), change in cases.items():
                 folder = "".join(c if c.isalnum() or c in "-." else "_" for c in f"{name}-{x:.4g}-{test}-{seed}")
                 jobs[name, x, test, seed] = (f"{campaign}/{folder}", script,

@@ -54,7 +54,7 @@ ROCKS = {
         "no crushing": dict(bond_crushing=0.0),
         "crushing 100 MPa": dict(bond_crushing=100e6),
         "crushing 250 MPa": dict(bond_crushing=250e6),
-        "crushing hardening 0": dict(crushing_hardening=0.0),
+        "crushing 400 MPa": dict(bond_crushing=400e6),
         "crushing hardening 0.1": dict(crushing_hardening=0.1),
         "no grains": dict(grain_edge=0.0),
         "strengths halved": dict(bond_tension=1.5e6, bond_cohesion=4.25e6, bond_fracture_energy=22.5,
