@@ -69,3 +69,21 @@ class SwingAndRotation:
         """(2,) m/s of the origin of the body frame at the time t (s)."""
         x, y = self.pose(t).offset - self.centre - self.swing * t
         return self.swing + self.angular_velocity * np.array([-y, x])
+
+
+def rigid_parts(piece, *, positions, masses, inertias, velocities, spins):
+    """((n, 2) m/s, (n,) rad/s): what the motion of discs in the plane has of the rigid motion of the piece each is of.
+
+    The rigid motion of a piece has its momentum and its moment of momentum: the rest has neither, and the kinetic
+    energy is the sum of both parts' own. piece: (n,) number of the piece, from 0 on; positions (n, 2) m; masses (n,)
+    kg; inertias (n,) kg m2; velocities (n, 2) m/s; spins (n,) rad/s.
+    """
+    def summed(values):
+        return np.bincount(piece, values)
+
+    mass = summed(masses)
+    arms, relative = (values - np.stack([summed(masses * column) / mass for column in values.T], axis=1)[piece]
+                      for values in (positions, velocities))
+    moment = summed(masses * (arms[:, 0] * relative[:, 1] - arms[:, 1] * relative[:, 0]) + inertias * spins)
+    spin = (moment / summed(masses * (arms**2).sum(axis=1) + inertias))[piece]
+    return velocities - relative + spin[:, None] * arms[:, ::-1] * (-1.0, 1.0), spin

@@ -5,7 +5,7 @@ from yade import O
 from rockwear.engines import access
 from rockwear.engines.base import RunEnded
 from rockwear.engines.bond_dashpots import BondDashpots
-from rockwear.engines.damping import BackgroundDamping
+from rockwear.engines.damping import BackgroundDamping, GrainDamping
 from rockwear.engines.energy_guard import EnergyGuard
 from rockwear.engines.path_follower import PathFollower
 from rockwear.engines.recorder import Recorder
@@ -33,21 +33,24 @@ class Cut(Scene):
     rock: a specimen of model.rock; bond_law: of kernels.bond_laws, which also gives the stiffness and friction of
     contacts in the rock; tool: a ToolAssembly; programme: a Programme; accuracy: scenes.accuracy.Accuracy; heat,
     expansion, gravity, boundary: of scenes.physics, or None; background_damping: 1/s; non_viscous_damping: of each
-    force; bond_damping: of the critical damping of bonds, in the plane; time_scale: mechanical over physical rate;
-    depth_of_cut: m, to which depth the tool must reach to cut; notes: {name: (value, unit)} of further results;
-    first_temperature: K of a tool without heat; control_radius: of the density map, in particle radii, 0 for none.
+    force; bond_damping: of the critical damping of bonds, in the plane; grain_quality: quality factor of vibrations
+    within grains at the highest frequency of the bonded rock, 0: they are not damped; time_scale: mechanical over
+    physical rate; depth_of_cut: m, to which depth the tool must reach to cut; notes: {name: (value, unit)} of further
+    results; first_temperature: K of a tool without heat; control_radius: of the density map, in particle radii, 0 for
+    none.
 
     In the plane the balances count per metre of thickness.
     """
 
     def __init__(self, *, rock, bond_law, tool, programme, accuracy, depth_of_cut, first_temperature, heat=None,
                  expansion=None, gravity=None, boundary=None, background_damping=0.0, non_viscous_damping=0.0,
-                 bond_damping=0.0, time_scale=1.0, notes=None, control_radius=0.0):
+                 bond_damping=0.0, grain_quality=0.0, time_scale=1.0, notes=None, control_radius=0.0):
         super().__init__()
         self.rock, self.bond_law, self.tool, self.programme, self.accuracy = rock, bond_law, tool, programme, accuracy
         self.heat_model, self.expansion_model, self.gravity, self.boundary_model = heat, expansion, gravity, boundary
         self.background_damping, self.time_scale = background_damping, time_scale
         self.non_viscous_damping, self.bond_damping = non_viscous_damping, bond_damping
+        self.grain_quality = grain_quality
         self.depth_of_cut, self.first_temperature, self.notes = depth_of_cut, first_temperature, notes or {}
         self.control_radius = control_radius
         self.units = tool.units
@@ -108,6 +111,11 @@ class Cut(Scene):
         self.rock_friction = tool.rock_friction(self.bonds, increment, accuracy.rock_sampling_period)
         self._make_heat()
         self.damping = self._make_damping()
+        self.grain_damping = None
+        if self.grain_quality and rock.grains is not None:
+            # Q = omega / rate of a mode of the frequency omega, of which 2 over the critical step is the highest.
+            self.grain_damping = GrainDamping(rock=rock, bonds=self.bonds, period=accuracy.damping_period,
+                                              rate=2.0 / (self.grain_quality * self.bonded_step))
         self.dashpots = None
         if self.bond_damping:
             self.dashpots = BondDashpots(rock=rock, bonds=self.bonds, ratio=self.bond_damping)
@@ -124,7 +132,8 @@ class Cut(Scene):
             self.bonds, self.dashpots, tool.contact, self.rock_friction,
             Separation(self.bonds, period=SEPARATION_PERIOD) if self.bond_law.yade_law == "JCFpm" else None,
             PathFollower(bodies=tool.bodies, clock=self.programme.path_time, period=PATH_PERIOD) if curved else None,
-            tool.wear_engine, tool.profile, self.heat, self.expansion, self.damping, self.boundary,
+            tool.wear_engine, tool.profile, self.heat, self.expansion, self.damping, self.grain_damping,
+            self.boundary,
             self.recorder, self.guard)
 
     def _make_heat(self):

@@ -25,6 +25,8 @@ class CutOutput(Output):
                    "rock_crushing": scene.bonds.energy_crushed,
                    "background_damping": scene.damping.dissipated if scene.damping else 0.0,
                    "removed_contacts": scene.tool.removed_energy}
+        if scene.grain_damping:
+            balance["grain_damping"] = scene.grain_damping.dissipated
         if scene.dashpots:
             balance["bond_dashpots"] = scene.dashpots.dissipated
         if scene.boundary:

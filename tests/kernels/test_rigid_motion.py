@@ -4,7 +4,7 @@ import math
 import numpy as np
 import pytest
 
-from rockwear.kernels.rigid_motion import Pose, Straight, SwingAndRotation
+from rockwear.kernels.rigid_motion import Pose, Straight, SwingAndRotation, rigid_parts
 
 POINTS = np.random.default_rng(3).normal(size=(20, 2))
 
@@ -58,3 +58,27 @@ def test_a_chord_of_the_path_is_off_it_by_its_sagitta():
     off = float(np.linalg.norm(half - (begin + end) / 2))
     assert off == pytest.approx((path.angular_velocity * 0.7 * period)**2 / (8 * 0.7), rel=1e-3)
     assert off < 24e-9
+
+
+def test_rigid_parts_of_pieces():
+    """A rigid motion is its own rigid part; of any other the rest has no momentum, no moment, and its own energy."""
+    random = np.random.default_rng(8)
+    piece = np.array([0, 1, 0, 2, 1, 0, 1])
+    x, v, w = random.normal(size=(7, 2)), random.normal(size=(7, 2)), random.normal(size=7)
+    m, inertia = random.uniform(1, 2, 7), random.uniform(1, 2, 7)
+    given = dict(positions=x, masses=m, inertias=inertia)
+    velocities, spins = rigid_parts(piece, velocities=v, spins=w, **given)
+    again = rigid_parts(piece, velocities=velocities, spins=spins, **given)
+    np.testing.assert_allclose(again[0], velocities)
+    np.testing.assert_allclose(again[1], spins)
+    assert velocities[3] == pytest.approx(v[3]) and spins[3] == pytest.approx(w[3])
+    rest, turned = v - velocities, w - spins
+    for k in range(3):
+        own = piece == k
+        np.testing.assert_allclose(m[own] @ rest[own], 0, atol=1e-12)
+        moment = m * (x[:, 0] * rest[:, 1] - x[:, 1] * rest[:, 0]) + inertia * turned
+        assert moment[own].sum() == pytest.approx(0, abs=1e-12)
+
+    def energy(v, w):
+        return m @ (v**2).sum(axis=1) + inertia @ w**2
+    assert energy(v, w) == pytest.approx(energy(velocities, spins) + energy(rest, turned))

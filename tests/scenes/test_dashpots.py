@@ -1,4 +1,4 @@
-"""Dashpots of bonds [Rojek 2014, eqs 18-22] against the damped oscillator, and their energy and momentum."""
+"""Dashpots of bonds [Rojek 2014, eqs 18-22] and damping of grains against the damped oscillator; energy, momentum."""
 import pytest
 
 from tests.running import checks_of
@@ -20,3 +20,18 @@ def test_what_the_dashpots_dissipate_closes_the_balance(checks):
 
 def test_forces_and_torques_are_internal(checks):
     assert checks["momentum"] < 1e-9
+
+
+def test_a_pair_in_a_grain_decays_by_its_quality_factor(checks):
+    assert checks["grain decay"] == pytest.approx(1, rel=1e-3)
+
+
+def test_a_ringing_grain_comes_to_rest_as_the_rigid_body_that_it_is(checks):
+    found = checks["ringing finely"]
+    assert found["bonds"] == 12 and abs(found["missed"]) < 1e-3 and found["momentum"] < 1e-9
+    assert found["rigid"] == pytest.approx(1, abs=1e-3)
+
+
+def test_a_grain_that_rings_hard_does_not_ring_louder(checks):
+    """Without damping its energy grows twofold in a quarter of these steps, by YADE's rule for shear."""
+    assert checks["ringing"]["kinetic"] < 0.15 and checks["ringing"]["momentum"] < 1e-9
