@@ -7,7 +7,7 @@ from tests.running import ROOT, run_script
 
 NAMES = {"bonds", "tool_contact", "rock_friction", "separation", "path_follower", "wear", "wear_profile", "heat",
          "expansion", "background_damping", "recorder", "energy_guard", "shear_rotation", "platens", "failure",
-         "dead_load", "bond_dashpots", "membrane", "pressed_ends",
+         "dead_load", "bond_dashpots", "grain_damping", "membrane", "pressed_ends",
          "absorbing_boundary", "grain_contacts", "outflow", "rest", "vibration"}
 
 

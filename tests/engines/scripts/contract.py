@@ -24,7 +24,7 @@ from rockwear.engines.bond_dashpots import BondDashpots
 from rockwear.engines.base import Engine
 from rockwear.engines.conduction import Conduction
 from rockwear.engines.confinement import Membrane, PressedEnds
-from rockwear.engines.damping import BackgroundDamping
+from rockwear.engines.damping import BackgroundDamping, GrainDamping
 from rockwear.engines.dead_load import DeadLoad
 from rockwear.engines.energy_guard import EnergyGuard
 from rockwear.engines.expansion import Expansion
@@ -383,8 +383,8 @@ class NowhereLinear(Tension):
 
 
 class Softening(Tension):
-    """The same with bonds that YADE's concrete model carries, and dashpots, its inner particles driven against one
-    another: at the checkpoint some bonds soften, some slip, some are crushed."""
+    """The same with bonds that YADE's concrete model carries, dashpots, and damping of the two grains between its ends,
+    its inner particles driven against one another: at the checkpoint some bonds soften, some slip, some are crushed."""
 
     law = Cohesive(kn=KN, kt=KT, mu=MU, bond_tension=RN, bond_cohesion=0.3 * RN, bond_fracture_energy=1.0,
                    bond_shear_energy=0.5, bond_crushing=0.05 * RN)
@@ -392,6 +392,7 @@ class Softening(Tension):
     def __init__(self):
         super().__init__()
         self.rock.laws = [self.law] * len(self.rock.pairs)
+        self.rock.grains = np.searchsorted([3 * RADIUS, 8 * RADIUS, 14 * RADIUS], self.rock.positions[:, 0])
 
     def _begin(self):
         super()._begin()
@@ -404,7 +405,8 @@ class Softening(Tension):
 
     def _engines(self):
         bonds, *others = super()._engines()
-        return [bonds, BondDashpots(rock=self.rock, bonds=bonds, ratio=0.05), *others]
+        return [bonds, BondDashpots(rock=self.rock, bonds=bonds, ratio=0.05),
+                GrainDamping(rock=self.rock, bonds=bonds, rate=1e4, period=5), *others]
 
 
 class Spinning(World):
