@@ -133,8 +133,7 @@ class Cut(Scene):
             Separation(self.bonds, period=SEPARATION_PERIOD) if self.bond_law.yade_law == "JCFpm" else None,
             PathFollower(bodies=tool.bodies, clock=self.programme.path_time, period=PATH_PERIOD) if curved else None,
             tool.wear_engine, tool.profile, self.heat, self.expansion, self.damping, self.grain_damping,
-            self.boundary,
-            self.recorder, self.guard)
+            self.boundary, self.recorder, self.guard)
 
     def _make_heat(self):
         self.heat = self.expansion = None

@@ -147,7 +147,5 @@ def common(v):
     """What a Cut is given whatever its tool and programme."""
     return dict(bond_law=bond_law(v), non_viscous_damping=v.non_viscous_damping,
                 bond_damping=getattr(v, "bond_damping", 0.0), grain_quality=getattr(v, "grain_quality", 0.0),
-                accuracy=accuracy(v),
-                depth_of_cut=v.depth_of_cut, heat=heat(v),
-                expansion=expansion(v),
+                accuracy=accuracy(v), depth_of_cut=v.depth_of_cut, heat=heat(v), expansion=expansion(v),
                 first_temperature=v.tool_temperature, control_radius=v.control_radius)

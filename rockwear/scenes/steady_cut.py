@@ -200,8 +200,8 @@ class SteadyCut(Programme):
         return {**found, **self.window.results()}
 
     def warnings(self):
-        found = self.window.warnings(self.scene.bonds.cracks)
-        known = uncertainty(self._forces(self.scene.recorder.columns())) if self.accuracy else 0.0
+        found, columns = self.window.warnings(self.scene.bonds.cracks), self.scene.recorder.columns()
+        known = uncertainty(self._forces(columns)) if self.accuracy and columns else 0.0
         if known > self.accuracy:
             far = f"to {100 * known:.0f} %" if known < math.inf else "not at all"
             found.append(f"the mean cutting force is known {far}, and was to be to {100 * self.accuracy:g} %: a longer "
