@@ -91,10 +91,10 @@ def rock_file(found, *, micro, targets, values):
     """The rock as a dict of the format of rockwear.model.rock_file."""
     measured = {}
     for o, one in found.verdicts.items():
-        if o.kind != "confined":
+        if o.test != "triaxial":
             measured[o.name] = {"mean": one.mean, "standard_deviation": one.deviation, "packings": one.count,
                                 "unit": o.unit}
-    confined = {o: one for o, one in found.verdicts.items() if o.kind == "confined"}
+    confined = {o: one for o, one in found.verdicts.items() if o.test == "triaxial"}
     if confined:
         measured["triaxial"] = {"mean": [[o.confinement, one.mean] for o, one in confined.items()],
                                 "standard_deviation": [one.deviation for one in confined.values()],
@@ -149,7 +149,7 @@ def radii(values):
 
 def figure(found, micro):
     """Measured over target, step by step, and each packing of the last check; strengths over confinement."""
-    confined = [o for o in micro.observables if o.kind == "confined"]
+    confined = [o for o in micro.observables if o.test == "triaxial"]
     drawn, panels = plots.canvas(12 if confined else 7.5, 4.5, 1, 2 if confined else 1)
     axes = panels[0]
     for number, o in enumerate(micro.observables):

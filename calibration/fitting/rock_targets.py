@@ -39,7 +39,8 @@ STAGES = "small", "full", "check"
 GIVEN = "porosity", "weibull_modulus"
 """Parameters of the rock that are given and not fitted, beside its grains."""
 KEPT = "rotation", "bond_shear_energy", "bond_crushing", "crushing_hardening"
-"""Parameters of the rock that the fit begins with, which stay as they are there."""
+"""Parameters of the rock that the fit begins with, which stay as they are there; the crushing strength where no ductile
+points are fitted."""
 UNITS = {"kpa": 1e3, "mpa": 1e6, "gpa": 1e9}
 """Pa, of the units that the header of a table may name."""
 GRAINS = (5.0, 0.0), (11.0, 1.8), (math.inf, 2.2)
@@ -49,9 +50,9 @@ tensile strengths of 1.5, 3 and 7 (525 discs, three packings)."""
 CONFINEMENTS = 0.1, 0.3
 """Confinements over UCS at which a friction angle is fitted."""
 HIGHEST = 1.5
-"""Confinement over UCS above which points of a table are left out: the rock is ductile there."""
-MOST_POINTS = 3
-"""Confined tests of one packing, each dear."""
+"""Confinement over UCS above which a rock is ductile: grains crush there (cohesive bonds alone can)."""
+MOST_POINTS, MOST_DUCTILE = 3, 2
+"""Confined tests of one packing up to there and beyond, each dear."""
 FIRST_POINT = 0.2
 """Largest difference of a table's unconfined strength from UCS, over UCS."""
 
@@ -103,7 +104,8 @@ GROUPS = [TARGETS, ROCK, SEARCH, OUTPUT]
 @dataclass(frozen=True)
 class Targets:
     """Properties of the rock in SI. fracture_toughness: None where it is not given; points: ((sigma3, sigma1), ...) at
-    sigma3 > 0; friction_angle, deg, None where it is not given; left_out: words on points that are not fitted."""
+    sigma3 > 0, ductile: those above HIGHEST ucs; friction_angle, deg, None where it is not given; left_out: words on
+    points that are not fitted."""
 
     youngs_modulus: float
     poissons_ratio: float
@@ -112,14 +114,19 @@ class Targets:
     fracture_toughness: float | None = None
     friction_angle: float | None = None
     points: tuple = ()
+    ductile: tuple = ()
     left_out: str = ""
+
+    def confined(self):
+        """All points, ((sigma3, sigma1), ...)."""
+        return self.points + self.ductile
 
     def as_properties(self):
         """{property: value} of a rock file."""
         names = *NEEDED, "fracture_toughness", "friction_angle"
         found = {name: getattr(self, name) for name in names if getattr(self, name) is not None}
         if self.points and self.friction_angle is None:
-            found["triaxial"] = [list(point) for point in self.points]
+            found["triaxial"] = [list(point) for point in self.confined()]
         return found
 
 
@@ -150,8 +157,8 @@ def targets_of(values):
             f"at least {least:.3g}, half of what the most brittle bonds have at these radii", "Pa sqrt(m)")
     within("porosity", values["porosity"], *POROSITY_LIMITS[2])
     if values["triaxial"]:
-        points, words = _chosen(read_table(values["triaxial"]), values["triaxial"], found["ucs"])
-        return Targets(**found, points=points, left_out=words)
+        return Targets(**found, **_chosen(read_table(values["triaxial"]), values["triaxial"], ucs=found["ucs"],
+                                          crushes=values["bond_law"] == "cohesive"))
     if values["friction_angle"] is not None:
         sine = math.sin(math.radians(values["friction_angle"]))
         slope = (1 + sine) / (1 - sine)
@@ -228,8 +235,8 @@ def _cell(path, line, row, place, factor):
     return value
 
 
-def _chosen(table, path, ucs):
-    """((points to fit), words on the others) of a table."""
+def _chosen(table, path, *, ucs, crushes):
+    """{"points", "ductile": points to fit, "left_out": words on the others} of a table. crushes: whether bonds can."""
     unconfined = table.get(0.0, ucs)
     require(abs(unconfined / ucs - 1) <= FIRST_POINT, "triaxial", f"{path}, sigma1 = {unconfined:g} Pa at sigma3 = 0",
             f"within {100 * FIRST_POINT:g} % of ucs = {ucs:g}")
@@ -242,10 +249,17 @@ def _chosen(table, path, ucs):
     rise = (table[low[-1]] - ucs) / low[-1]
     require(least <= rise <= most, "triaxial", f"{path}, sigma1 = {table[low[-1]]:g} Pa at sigma3 = {low[-1]:g} Pa",
             f"above ucs = {ucs:g} by {least:g} to {most:g} sigma3, as of what has friction")
-    kept = sorted({low[round(k)] for k in np.linspace(0, len(low) - 1, MOST_POINTS)})
-    others = [f"{1e-6 * least:g}" for least in table if least and least not in kept]
-    words = f"Points of the table at {', '.join(others)} MPa are not fitted." if others else ""
-    return tuple((least, table[least]) for least in kept), words
+    kept = _spread(low, MOST_POINTS)
+    ductile = _spread([least for least in table if least > HIGHEST * ucs], MOST_DUCTILE) if crushes else []
+    others = [f"{1e-6 * least:g}" for least in table if least and least not in kept + ductile]
+    return {"points": tuple((least, table[least]) for least in kept),
+            "ductile": tuple((least, table[least]) for least in ductile),
+            "left_out": f"Points of the table at {', '.join(others)} MPa are not fitted." if others else ""}
+
+
+def _spread(values, most):
+    """At most `most` of sorted values, the first and the last among them."""
+    return sorted({values[round(k)] for k in np.linspace(0, len(values) - 1, most)}) if values else []
 
 
 def start_of(values):
@@ -277,4 +291,5 @@ def given_of(values, targets, start=None):
         edge = (values["radius_min"] + values["radius_max"]) / 2 * next(part for most, part in GRAINS if ratio <= most)
     found = {name: start.get(name, values[name]) if values[name] == OF_ROCK[name].default else values[name]
              for name in GIVEN}
-    return {**found, "grain_edge": float(f"{edge:.4g}"), **{name: start[name] for name in KEPT if start.get(name)}}
+    return {**found, "grain_edge": float(f"{edge:.4g}"), **{
+        name: start[name] for name in KEPT if start.get(name) and not (name == "bond_crushing" and targets.ductile)}}

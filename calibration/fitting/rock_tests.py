@@ -102,7 +102,7 @@ class Laboratory:
         if test == "toughness":
             return "yade_scripts/toughness.py", {"size": _digits(stage.notched * radius)}
         strength = {"compression": t.ucs, "tension": t.tensile_strength,
-                    "triaxial": dict(t.points).get(confinement, 0.0) - confinement}[test]
+                    "triaxial": dict(t.confined()).get(confinement, 0.0) - confinement}[test]
         side = _digits((stage.confined if test == "triaxial" else stage.side) * radius)
         strain = strength / t.youngs_modulus
         common = {"width": side, "height": side, "drop": DROP, "speed": _digits(SPEED[test] * strain),

@@ -18,6 +18,8 @@ from rockwear.scenes.parameters import OF_ROCK
 
 SANDSTONE = Targets(18e9, 0.18, 60e6, 7e6)
 TOUGH = Targets(18e9, 0.18, 60e6, 7e6, fracture_toughness=0.9e6, points=((6e6, 88e6), (18e6, 132e6)))
+DUCTILE = replace(TOUGH, fracture_toughness=None, points=((6e6, 88e6), (18e6, 132e6)),
+                  ductile=((90e6, 240e6), (180e6, 295e6)))
 VALUES = {"name": "made_up", "source": "nowhere", "radius_min": 1e-3, "radius_max": 1.5e-3}
 
 
@@ -29,7 +31,8 @@ def rock(u, o, large):
             "nu": 0.9 * (1 - u["kt_over_kn"]) / (3 + u["kt_over_kn"]) + 0.05, "ucs": ucs,
             "tension": 0.6 * u["tension"] * u["shear"]**0.1 * size,
             "toughness": u["tension"] * np.sqrt(1.1 * u["length"]),
-            "confined": ucs + o.confinement * (1 + u["mu"])**2}[o.kind]
+            "confined": ucs + o.confinement * (1 + u["mu"])**2,
+            "ductile": 3 * (u.get("crushing", 0.0) * u["tension"])**0.7 * o.confinement**0.3 * u["mu"]**0.1}[o.kind]
 
 
 def laboratory(micro, scatter, limit=np.inf):
@@ -73,6 +76,24 @@ def test_a_rock_with_scatter_is_met_on_packings_that_were_not_seen(law, targets)
     assert len(seeds) == len(set(seeds)) == 24
     # The standard errors of the stiffnesses: those of E and nu.
     assert 0.005 < found.error[0] < 0.05 and (found.error < 0.3).all()
+
+
+def test_strengths_of_the_ductile_rock_set_the_crushing_strength(tmp_path):
+    micro, found, _ = fitted(DUCTILE, "cohesive", scatter=0.005)
+    assert all(one.met for one in found.verdicts.values()) and len(found.verdicts) == 8
+    bonds = micro.parameters(found.x)
+    # Its own relation: both points have the same.
+    sought = (240e6 / 3 / 90e6**0.3 / bonds["mu"]**0.1)**(1 / 0.7)
+    assert bonds["bond_crushing"] == pytest.approx(sought, rel=0.1)
+    rock_page.write(tmp_path, found, micro=micro, targets=DUCTILE, values=VALUES)
+    part = rock_file.read(tmp_path / "rock.json", OF_ROCK).parts["plane"]
+    assert [point[0] for point in part.measured["triaxial"]["mean"]] == [6e6, 18e6, 90e6, 180e6]
+    assert part.parameters["bond_crushing"] == bonds["bond_crushing"]
+    again = Micro(law="cohesive", targets=DUCTILE, radius=1.25e-3, given={}, start=bonds)
+    assert again.parameters(again.first)["bond_crushing"] == pytest.approx(bonds["bond_crushing"], rel=1e-3)
+    # A rock that does not crush begins with a guess.
+    again = Micro(law="cohesive", targets=DUCTILE, radius=1.25e-3, given={}, start={**bonds, "bond_crushing": 0.0})
+    assert again.parameters(again.first)["bond_crushing"] == pytest.approx(1.35 * 295e6, rel=1e-3)
 
 
 def test_a_first_check_that_misses_joins_the_fit():
@@ -170,6 +191,8 @@ def test_a_search_begins_with_the_bonds_of_a_rock_at_other_radii(tmp_path):
     words = {**GIVEN, "start": tmp_path / "rock.json"}
     values = parameters.read(GROUPS, [word for name, value in words.items() for word in (f"--{name}", str(value))])
     kept = given_of(values, targets, rock_targets.start_of(values))
+    assert "bond_crushing" not in given_of(values, replace(targets, ductile=((90e6, 240e6),)),
+                                           rock_targets.start_of(values))
     assert {**kept, **interlocked} == kept and kept["porosity"] == 0.12 and kept["grain_edge"] > 0
     made = Micro(law="cohesive", targets=targets, radius=1e-3, given=kept, start=rock_targets.start_of(values))
     assert made.parameters(made.first)["rotation"] == "blocked"
@@ -332,7 +355,11 @@ def test_a_table_of_confined_strengths(tmp_path):
     assert read_table(path)[10e6] == pytest.approx(110e6)
     found = read_targets(triaxial=path)
     assert found.points == ((10e6, 110e6), (30e6, 180e6), (80e6, 250e6)) and len(found.points) <= MOST_POINTS
-    assert found.left_out == "Points of the table at 20, 200 MPa are not fitted."
+    assert found.left_out == "Points of the table at 20 MPa are not fitted." and found.ductile == ((200e6, 400e6),)
+    assert found.as_properties()["triaxial"][-1] == [200e6, 400e6]
+    # Bonds that cannot crush.
+    brittle = read_targets(triaxial=path, bond_law="coulomb")
+    assert brittle.ductile == () and brittle.left_out == "Points of the table at 20, 200 MPa are not fitted."
     for text in ("sigma1,sigma3\n5e7,0\n9e7,1e7\n", "\n sigma3 (MPa);sigma1 (MPa)\n\n0;50\n10;90\n",
                  "sigma3_kPa\tsigma1_GPa\n0\t0.05\n1e4\t0.09\n"):
         assert read_table(table(tmp_path, text)) == {0.0: 5e7, 1e7: pytest.approx(9e7)}
