@@ -38,8 +38,7 @@ IN_TENSION = 1
 """Mode of a crack (cracks.csv) on which more work was spent in tension than in slip."""
 
 ROCK = dict(rock="crushing_sandstone")
-CUT = dict(depth_of_cut=5e-3, discs_per_depth=16, rake=-5.0, velocity=8.0, snapshot_period=5e-4, cut_length=0.06,
-           grain_quality=0.0)
+CUT = dict(depth_of_cut=5e-3, discs_per_depth=16, rake=-5.0, velocity=8.0, snapshot_period=5e-4, cut_length=0.06)
 SHORT = 0.03
 """m of way with small discs."""
 BOX = dict(width=0.02, height=0.01)
@@ -53,18 +52,18 @@ ROCKS = {
     FINEST: dict(ROCK, discs_per_depth=32),
     **{f"{EIGHT}, {name}": dict(ROCK, discs_per_depth=8, **change) for name, change in {
         "no crushing": dict(bond_crushing=0.0),
-        "crushing 100 MPa": dict(bond_crushing=100e6),
+        "crushing 150 MPa": dict(bond_crushing=150e6),
         "crushing 250 MPa": dict(bond_crushing=250e6),
-        "crushing 400 MPa": dict(bond_crushing=400e6),
         "crushing hardening 0.1": dict(crushing_hardening=0.1),
+        "bentheim": dict(rock="bentheim"),
         "no grains": dict(grain_edge=0.0),
         "strengths halved": dict(bond_tension=1.5e6, bond_cohesion=4.25e6, bond_fracture_energy=22.5,
-                                 bond_shear_energy=250.0, bond_crushing=75e6),
+                                 bond_shear_energy=250.0, bond_crushing=240e6),
         "Weibull modulus 2": dict(weibull_modulus=2.0),
         "fracture energy 30": dict(bond_fracture_energy=30.0)}.items()}}
 """Rocks that are cut as the base is."""
-HALVED = f"{EIGHT}, strengths halved"
-PULLED = BASE, HALVED
+HALVED, BENTHEIM = f"{EIGHT}, strengths halved", f"{EIGHT}, bentheim"
+PULLED = BASE, HALVED, BENTHEIM
 """Rocks that are pulled in the laboratory, too; the others have the bonds of the base."""
 CHANGES = {
     "wear flat 1 mm": dict(wear_flat=1e-3),
@@ -78,19 +77,23 @@ CHANGES = {
     "tool friction 0.6": dict(tool_mu=0.6),
     "clearance 20°": dict(clearance=20.0),
     "window doubled": dict(window_behind=0.024, window_ahead=0.05, window_height=0.04),
-    "grains damped": dict(grain_quality=30.0),
-    "grains damped, boundary fixed": dict(grain_quality=30.0, boundary="fixed"),
+    "boundary fixed": dict(boundary="fixed"),
+    "grains not damped": dict(grain_quality=0.0),
     "damping 5000 1/s": dict(background_damping=5e3),
     "time step 0.95": dict(time_step_fraction=0.95),
 }
 """How else the rock of eight discs is cut: a twentieth of the cost of sixteen."""
 CUTS = {**{f"{EIGHT}, {name}": change for name, change in CHANGES.items()},
-        f"{EIGHT}, no crushing, grains damped": CHANGES["grains damped"],
         **{name: CHANGES[name] for name in ("wear flat 2 mm", "velocity 4 m/s")}}
 """How else the rock that a case begins with is cut, or that of the base."""
 DRAWN = {BASE: "steady_cut", FINEST: "steady_cut_finest"}
 """{case: name of its figures}."""
-JUDGED = BASE, EIGHT, FINEST, HALVED, f"{EIGHT}, depth 2.5 mm", f"{EIGHT}, depth 10 mm"
+SETTINGS = BASE, FINEST, EIGHT, *(f"{EIGHT}, {name}" for name in (
+    "velocity 4 m/s", "velocity 2 m/s", "window doubled", "boundary fixed", "time step 0.95", "damping 5000 1/s"))
+"""Cases that cut the same rock with the same tool: they differ in what they cost."""
+MOVED = 0.15
+"""Part of specific energy and friction work by which a setting may move them."""
+JUDGED = BASE, EIGHT, FINEST, HALVED, BENTHEIM, f"{EIGHT}, depth 2.5 mm", f"{EIGHT}, depth 10 mm"
 CASES = [BASE, *[name for name in ROCKS if name != BASE], *CUTS]
 
 COLUMNS = {"specific energy / UCS": "energy", "mean Fc, kN/m": "force", "peak / mean": "peaks",
@@ -323,6 +326,20 @@ def resolution(found):
     return drawn
 
 
+def price(found):
+    """Figure: what a setting moves in specific energy and in friction at the tool, as wear goes, over what it costs."""
+    drawn, panels = plots.canvas(12, 4.4, 1, 2)
+    for axes, (name, title) in zip(panels, {"force": "specific energy", "friction": "friction at the tool"}.items()):
+        axes.axhspan(1 - MOVED, 1 + MOVED, color="#dfe8d8")
+        for number, case in enumerate(case for case in SETTINGS if case in found):
+            value, error = scaled(found[case][name], 1 / found[EIGHT][name].value)
+            axes.errorbar(found[case]["cost"], value, np.nan_to_num(error), fmt="o", color=f"C{number}", capsize=3,
+                          label=case.removeprefix(f"{EIGHT}, ").replace(BASE, "sixteen discs"))
+        axes.set(xscale="log", ylim=(0, None), xlabel="minutes per metre", title=f"{title} over that of {EIGHT}")
+    panels[0].legend(fontsize=8)
+    return drawn
+
+
 def write(folder):
     """Tables and figures of all runs that exist. -> the tables, in Markdown."""
     found = {case: row for case in CASES if (row := of_case(folder, case))}
@@ -347,6 +364,8 @@ def write(folder):
         with matplotlib.rc_context(plots.STYLE):
             files.append(folder / "steady_cut_resolution.png")
             resolution(found).savefig(files[-1])
+            files.append(folder / "steady_cut_price.png")
+            price(found).savefig(files[-1])
     with open(files[0], "w", encoding="utf-8", newline="") as file:
         csv.writer(file).writerows([["case", "quantity", "mean", "standard error"],
                                     *([case, name, *value] for case, row in found.items()

@@ -112,6 +112,16 @@ def test_the_figure_over_the_discs_has_what_is_there():
     assert [one.get_text() for one in energy.get_xticklabels()] == ["8 discs\n20 min/m", "16 discs\n120 min/m"]
 
 
+def test_settings_are_compared_with_eight_discs_over_what_they_cost():
+    row = {"force": Measured(40.0, 4.0), "friction": Measured(4.0, math.nan), "cost": 20.0}
+    found = {"eight discs": row, "eight discs, velocity 4 m/s": {**row, "force": Measured(30.0, 2.0), "cost": 40.0},
+             "eight discs, rake 10°": row}
+    energy, friction = steady_cut.price(found).axes
+    points = [tuple(line.get_xydata()[0]) for line in energy.lines if line.get_marker() == "o"]
+    assert points == [(20.0, 1.0), (40.0, 0.75)]
+    assert [words.get_text() for words in energy.get_legend().get_texts()] == ["eight discs", "velocity 4 m/s"]
+
+
 def write(folder, results, **entries):
     """A made-up summary."""
     folder.mkdir(parents=True)

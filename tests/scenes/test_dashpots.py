@@ -26,6 +26,11 @@ def test_a_pair_in_a_grain_decays_by_its_quality_factor(checks):
     assert checks["grain decay"] == pytest.approx(1, rel=1e-3)
 
 
+def test_visits_in_step_with_a_vibration_do_not_feed_it(checks):
+    """Velocities of the leapfrog are half a step behind the positions."""
+    assert checks["in step"] <= 1.0
+
+
 def test_a_ringing_grain_comes_to_rest_as_the_rigid_body_that_it_is(checks):
     found = checks["ringing finely"]
     assert found["bonds"] == 12 and abs(found["missed"]) < 1e-3 and found["momentum"] < 1e-9

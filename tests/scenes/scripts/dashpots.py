@@ -119,11 +119,27 @@ def rigid_energy(rock):
     return 0.5 * float(rock.masses @ (velocities**2).sum(axis=1) + rock.inertias @ spins**2)
 
 
+def in_step():
+    """Largest amplitude of pairs that oscillate along their line, stretched at first, over that at first; each is
+    visited at an interval of its own, some at the same phase of each oscillation."""
+    found = []
+    for period in range(10, 32):
+        rock, _, _ = built([(1e-3, 1e-3), (3e-3, 1e-3)], [(-1.0, 0, 0), (1.0, 0, 0)], rate=1e9, period=period)
+        # Ten steps and a half an oscillation.
+        O.dt = 2 * math.pi / math.sqrt(2 * LAW.kn / rock.masses[0]) / 10.5
+        gap = []
+        for _ in range(40 * period):
+            base.run(1)
+            gap.append(abs(O.bodies[1].state.pos[0] - O.bodies[0].state.pos[0] - 2 * RADIUS))
+        found.append(max(gap[-2 * period:]) / max(gap[:period]))
+    return max(found)
+
+
 OMEGA = math.sqrt(2 * LAW.kn / (BLOCK / 2))
 """rad/s, of a pair along its line."""
 checks = {"decay": decrement() / (2 * math.pi * RATIO / math.sqrt(1 - RATIO**2)),
           "grain decay": decrement(rate=OMEGA / 40, period=5) * 40 / math.pi,
-          "energy": energy(RATIO), "strong": energy(0.7), "momentum": momentum(),
+          "in step": in_step(), "energy": energy(RATIO), "strong": energy(0.7), "momentum": momentum(),
           "ringing finely": ringing(0.02, 20000, 1.0), "ringing": ringing(0.6, 20000, 10.0)}
 with open(sys.argv[-1], "w", encoding="utf-8") as file:
     json.dump(checks, file)
