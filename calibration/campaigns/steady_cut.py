@@ -97,6 +97,7 @@ JUDGED = BASE, EIGHT, FINEST, HALVED, BENTHEIM, f"{EIGHT}, depth 2.5 mm", f"{EIG
 CASES = [BASE, *[name for name in ROCKS if name != BASE], *CUTS]
 
 COLUMNS = {"specific energy / UCS": "energy", "mean Fc, kN/m": "force", "peak / mean": "peaks",
+           "of packings abreast": "abreast",
            "overbreak / depth": "overbreak", "chip length / depth": "chip", "mean Fn, kN/m": "pressed",
            "thrust / cutting": "thrust",
            "friction work, kN/m": "friction", "way under load": "loaded", "work in bonds": "bonds",
@@ -183,6 +184,18 @@ def of_run(run):
             "crushing": Measured(energy["rock_crushing"] / energy["tool_work"], math.nan)}
 
 
+def abreast(runs):
+    """Measured mean peak over mean of the mean force of these runs, from BEGIN depths of cut on: of a tool so many
+    chips wide, each of which breaks on its own."""
+    depth = runs[0].parameter("depth_of_cut")
+    records = [[run.column(name) for name in ("distance", "cutting_force")] for run in runs]
+    way = np.linspace(0.0, min(distance[-1] for distance, _ in records), max(len(record[0]) for record in records))
+    total = np.mean([np.interp(way, distance, steady_record.integral(distance, force))
+                     for distance, force in records], axis=0)
+    peaks = steady_record.peaks(way, np.diff(total, prepend=0.0) / way[1], depth=depth, begin=BEGIN * depth)
+    return steady_record.quotient(peaks.mean(), steady_record.mean(way, total, BEGIN * depth))
+
+
 def under_load(distance, cutting, peak, begin):
     """Measured part of the way on which the cutting force is above LOAD of the mean peak; unknown without peaks."""
     if math.isnan(peak):
@@ -213,6 +226,7 @@ def of_case(folder, case):
         return None
     each = [of_run(run) for run in runs]
     found = {name: over_packings([one[name] for one in each]) for name in each[0]}
+    found["abreast"] = abreast(runs) if len(runs) > 1 else steady_record.UNKNOWN
     ucs = strengths(folder, rock_of(case))
     found["ucs"] = steady_record.sample_mean(1e-6 * ucs)
     found["specific_energy"] = scaled(found["energy"], 1e-6)
@@ -346,7 +360,8 @@ def write(folder):
     files = [folder / "steady_cut.csv"]
     lines = ["## Causes, one at a time", "", f"Mean ± standard error: of the packings where there are three, else of "
              f"the cuts' own records, from {BEGIN} depths of cut on. Way under load: part of the way with a cutting "
-             f"force above {LOAD:g} of the mean peak. Work in bonds: part of the tool's work that bonds take "
+             f"force above {LOAD:g} of the mean peak. Of packings abreast: peak over mean of the mean force of all "
+             "packings, as of a tool so many chips wide. Work in bonds: part of the tool's work that bonds take "
              "in slip and damage, those alone that broke in tension, and in crushing. Energy missed: residual of the "
              "balance over the tool's work, of the worst packing. Minutes on a shared core.", "", *causes(found)]
     if judged := envelope(folder, found):

@@ -46,6 +46,20 @@ def test_what_comes_before_the_end_of_the_slope_does_not_count(tmp_path):
     assert (found["bonds"].value, found["tension"].value, found["crushing"].value) == (0.5, 0.1, 0.3)
 
 
+def test_chips_that_break_abreast_at_places_of_their_own_have_lower_peaks(tmp_path):
+    """Triangles, a fourth of a depth long and two depths apart, in two records half a spacing apart: half the peak."""
+    way = np.linspace(0, 0.06, 4801)
+    for name, shift in (("a", 0.0), ("b", 5e-3)):
+        write(tmp_path / name, {})
+        force = FORCE * np.maximum(1 - abs((way + shift) % 0.01 - 5e-3) / 6.25e-4, 0.0)
+        rows(tmp_path / name / "history.csv", "distance cutting_force", way, force)
+    one, other = (RunFolder(tmp_path / name) for name in ("a", "b"))
+    alone, both = steady_cut.abreast([one]), steady_cut.abreast([one, other])
+    # Mean: a sixteenth of the peak, of which the running mean over a tenth of a mm loses some 4 %.
+    assert alone.value == pytest.approx(16, rel=0.06) and both.value == pytest.approx(0.5 * alone.value, rel=0.02)
+    assert steady_cut.abreast([one, one]).value == pytest.approx(alone.value)
+
+
 def test_the_way_under_load_is_not_known_without_peaks():
     distance = np.linspace(0, 0.06, 601)
     half = np.where(distance > 0.03, FORCE, 0.0)
