@@ -2,7 +2,7 @@
 import math
 
 import numpy as np
-from yade import O, Vector3, utils
+from yade import O, utils
 
 from rockwear.engines.access import FIXED, IN_PLANE, rock_states
 from rockwear.engines.base import FORCES, Engine
@@ -67,19 +67,23 @@ class GrainDamping(Engine):
         self.within = np.equal(*rock.grains[rock.pairs].T)
         self.dissipated = 0.0
 
+    def connect(self):
+        self.states = [O.bodies[n].state for n in range(self.rock.count)]
+
     def act(self):
         rock, lost = self.rock, 1.0 - math.exp(-self.rate * self.elapsed())
         piece = pieces(rock.count, rock.pairs, self.within & (self.bonds.status != SEPARATED))
         # Of grains that a boundary holds in part it is not known how they would move.
-        held = np.array([O.bodies[n].state.blockedDOFs != IN_PLANE for n in range(rock.count)])
+        held = np.array([state.blockedDOFs != IN_PLANE for state in self.states])
         free = np.flatnonzero((np.bincount(piece, held) == 0)[piece] & (np.bincount(piece) > 1)[piece])
         if not len(free):
             return
         states = rock_states(rock)[free]
         own = dict(masses=rock.masses[free], inertias=rock.inertias[free])
-        forces, torques = (np.array([of(n) for n in free.tolist()]) for of in (O.forces.f, O.forces.t))
-        motion = dict(velocities=states[:, 3:5] + 0.5 * O.dt * forces[:, :2] / own["masses"][:, None],
-                      spins=states[:, 8] + 0.5 * O.dt * torques[:, 2] / own["inertias"])
+        forces = np.array([(force[0], force[1]) for force in map(O.forces.f, free.tolist())])
+        torques = np.array([O.forces.t(n)[2] for n in free.tolist()])
+        motion = dict(velocities=states[:, 3:5] + 0.5 * O.dt * forces / own["masses"][:, None],
+                      spins=states[:, 8] + 0.5 * O.dt * torques / own["inertias"])
         velocities, spins = rigid_parts(np.unique(piece[free], return_inverse=True)[1], positions=states[:, :2], **own,
                                         **motion)
         vibration, rolling = motion["velocities"] - velocities, motion["spins"] - spins
@@ -87,8 +91,8 @@ class GrainDamping(Engine):
             own["masses"] @ (vibration**2).sum(axis=1) + own["inertias"] @ rolling**2)
         for n, (x, y), spin in zip(free.tolist(), (states[:, 3:5] - lost * vibration).tolist(),
                                    (states[:, 8] - lost * rolling).tolist()):
-            state = O.bodies[n].state
-            state.vel, state.angVel = Vector3(x, y, 0.0), Vector3(0.0, 0.0, spin)
+            state = self.states[n]
+            state.vel, state.angVel = (x, y, 0.0), (0.0, 0.0, spin)
 
     def state(self):
         return {"dissipated": self.dissipated}

@@ -43,6 +43,7 @@ def built(places, velocities, ratio=RATIO, **grains):
     base.register([bonds, damping])
     base.insert([bonds, damping])
     bonds.connect()
+    damping.connect()
     return rock, bonds, damping
 
 
