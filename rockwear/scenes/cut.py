@@ -23,6 +23,8 @@ PATH_PERIOD = 100
 """Steps N between the corners of a curved path, which chords leave by (v dt N)^2 / 8R: 23 nm at 5.7 m/s and 0.7 m."""
 BOUNDARY_PERIOD = 10
 """Steps between samples of the energy that the boundary absorbs."""
+DAMPED = 0.2
+"""Part of the rock's velocity that one visit of the background damping may take: between visits it moves undamped."""
 SEPARATION_PERIOD = GUARD_PERIOD = 200
 """Steps between looks for separated bonds, and at the energy."""
 
@@ -152,7 +154,9 @@ class Cut(Scene):
         rates = self.programme.damping_rates or [self.background_damping]
         if not any(rates):
             return None
-        return BackgroundDamping(rate=rates[0], bodies=range(self.rock.count), period=self.accuracy.damping_period)
+        most = max(1, int(DAMPED / (max(rates) * self.time_step)))
+        return BackgroundDamping(rate=rates[0], bodies=range(self.rock.count),
+                                 period=min(self.accuracy.damping_period, most))
 
     def _least_energy(self):
         """J that the run may hold whatever the tool's work: a heavy particle at five times the tool's speed, a fall

@@ -250,7 +250,7 @@ ACCURACY = Group("accuracy", (
               {"heat": (True,)}),
     Parameter("surface_period", 5e-4, "s", above_zero, "between searches for free surface and open cracks", "ours",
               {"heat": (True,)}),
-    Parameter("damping_period", 500, "steps", integer(1), "between visits of the background damping"),
+    Parameter("damping_period", 500, "steps", integer(1), "between visits of the background damping, at most"),
     Parameter("record_period", 2e-5, "s", above_zero, "between rows of history.csv")))
 
 # ---- output
