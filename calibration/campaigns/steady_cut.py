@@ -271,9 +271,13 @@ def envelope(folder, found):
         for one in expected(compressive_strength=1e6 * row["ucs"].value, tensile_strength=tension.mean(), depth=depth,
                             rake=math.radians(CUT["rake"])):
             measured, factor, unit = ours[one.observable]
-            rows.append([case, one.observable.replace("_", " "), f"{one.low * factor:.3g} to {one.high * factor:.3g} "
-                         f"{unit}", one.basis, shown(measured),
-                         one.verdict(measured.value / factor, measured.standard_error / factor)])
+            found_here = {case: measured}
+            if one.observable == "peak_over_mean" and math.isfinite(row["abreast"].value):
+                found_here[f"{case}, packings abreast"] = row["abreast"]
+            rows += [[name, one.observable.replace("_", " "), f"{one.low * factor:.3g} to {one.high * factor:.3g} "
+                      f"{unit}", one.basis, shown(value),
+                      one.verdict(value.value / factor, value.standard_error / factor)]
+                     for name, value in found_here.items()]
     return rows
 
 

@@ -92,6 +92,10 @@ def test_cuts_are_judged_at_their_own_depth_and_strength(tmp_path):
     assert judged["base", "mean cutting force"][::3] == ["66 to 144 kN/m", "below"]
     assert judged["base", "specific energy"][::3] == ["5 to 20 MJ/m³", "inside"]
     assert ("eight discs, depth 10 mm", "mean cutting force") not in judged
+    assert not any("abreast" in case for case, _ in judged)
+    found["base"]["abreast"] = Measured(3.0, 0.2)
+    more = steady_cut.envelope(tmp_path, found)
+    assert [row[5] for row in more if row[0] == "base, packings abreast"] == ["inside", "inside"]
     assert judged["eight discs, depth 10 mm", "overbreak"][3] == "inside"
 
 
