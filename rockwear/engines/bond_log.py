@@ -114,5 +114,10 @@ class BondLog(Engine):
                        for row in state["cracks"].tolist()]
 
     def log(self):
-        modes = [crack.mode for crack in self.cracks]
-        return {"tensile_cracks": (modes.count(1), "-"), "shear_cracks": (modes.count(2), "-")}
+        return crack_counts(self.cracks)
+
+
+def crack_counts(cracks):
+    """{name: (number, unit)} of cracks by mode."""
+    modes = [crack.mode for crack in cracks]
+    return {"tensile_cracks": (modes.count(1), "-"), "shear_cracks": (modes.count(2), "-")}

@@ -5,6 +5,7 @@ import numpy as np
 from yade import utils
 
 from rockwear.engines import access
+from rockwear.engines.bond_log import crack_counts
 from rockwear.kernels.archard import KELVIN
 from rockwear.kernels.rigid_motion import Pose
 from rockwear.run import vtk
@@ -127,7 +128,7 @@ class CutOutput(Output):
         found = {"simulated_time": (scene.time, "s"), "time_step": (scene.time_step, "s"),
                  "critical_time_step": (scene.critical_step, "s"),
                  "bonded_critical_time_step": (scene.bonded_step, "s"),
-                 **scene.notes, **scene.programme.results(columns), **scene.tool.results(), **scene.bonds.log(),
+                 **scene.notes, **scene.programme.results(columns), **scene.tool.results(), **crack_counts(self._cracks()),
                  **{f"rock_{name}": value for name, value in scene.rock.report().items()}}
         if scene.tool.profile:
             found.update(scene.tool.wear.trust(scene.tool))
@@ -136,10 +137,14 @@ class CutOutput(Output):
                 found[name] = (float(np.nanmax(columns[name])) if name in columns else math.nan, "K")
         return found
 
+    def _cracks(self):
+        """Those in rock that has been replaced since, too."""
+        return self.scene.programme.cracks() + self.scene.bonds.cracks
+
     def tables(self):
         scene = self.scene
-        cracks, profile = scene.programme.cracks() + scene.bonds.cracks, scene.tool.profile
-        found = {**crack_table(cracks), **scene.programme.tables()}
+        profile = scene.tool.profile
+        found = {**crack_table(self._cracks()), **scene.programme.tables()}
         if profile:
             header = [f"place_{n} [{scene.units.volume}]" for n in range(profile.places)]
             found["wear_profile.csv"] = header, profile.increments

@@ -37,7 +37,8 @@ def test_balances_close_while_the_window_moves_and_begins_anew_with_each_turn(ne
     cracks = columns["tensile_cracks [-]"] + columns["shear_cracks [-]"]
     assert 0 <= cracks[stage == 3][0] < 0.5 * cracks[stage == 1][-1]
     logged = len((never.out / "cracks.csv").read_text(encoding="utf-8").splitlines()) - 1
-    assert logged == cracks[stage == 2][-1] + value(never, "tensile_cracks") + value(never, "shear_cracks")
+    assert logged > cracks[stage == 3][-1]
+    assert logged == value(never, "tensile_cracks") + value(never, "shear_cracks")
 
 
 def test_killed_in_the_second_turn_and_resumed_equals_never_stopped(never, tmp_path):
