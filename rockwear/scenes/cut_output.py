@@ -128,7 +128,8 @@ class CutOutput(Output):
         found = {"simulated_time": (scene.time, "s"), "time_step": (scene.time_step, "s"),
                  "critical_time_step": (scene.critical_step, "s"),
                  "bonded_critical_time_step": (scene.bonded_step, "s"),
-                 **scene.notes, **scene.programme.results(columns), **scene.tool.results(), **crack_counts(self._cracks()),
+                 **scene.notes, **scene.programme.results(columns), **scene.tool.results(),
+                 **crack_counts(self._cracks()),
                  **{f"rock_{name}": value for name, value in scene.rock.report().items()}}
         if scene.tool.profile:
             found.update(scene.tool.wear.trust(scene.tool))
