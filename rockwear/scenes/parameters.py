@@ -154,8 +154,8 @@ OTHER_DAMPING = (
               "velocity (Cundall's)", "[Rojek 2003, eqs 3.33-3.34]; [Rojek 2014, 3.1.3]"),
     Parameter("bond_damping", 0.0, "", number(0, 1), "dashpots of bonds, normal and tangential, as a fraction of the "
               "critical ones; in the plane", "[Rojek 2014, eqs 18-22]"),
-    Parameter("grain_quality", 30.0, "", number(0), "quality factor of vibrations within grains, in the plane; 0: "
-              "they do not decay", "ours; sandstones have some 20 to 100, recalled"))
+    Parameter("grain_quality", 30.0, "", number(0), "quality factor of vibrations within grains, in the plane, if "
+              "damping_period is short against their decay; 0: they do not decay", "ours; sandstones have some 20 to 100, recalled"))
 CYCLES = Group("motion", (
     *CUT_MOTION,
     Parameter("start_up", 0.005, "s", duration, "time of the start-up cut", "[Rojek 2003, 9.1]"),
