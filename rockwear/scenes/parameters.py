@@ -155,7 +155,8 @@ OTHER_DAMPING = (
     Parameter("bond_damping", 0.0, "", number(0, 1), "dashpots of bonds, normal and tangential, as a fraction of the "
               "critical ones; in the plane", "[Rojek 2014, eqs 18-22]"),
     Parameter("grain_quality", 30.0, "", number(0), "quality factor of vibrations within grains, in the plane, if "
-              "damping_period is short against their decay; 0: they do not decay", "ours; sandstones have some 20 to 100, recalled"))
+              "damping_period is short against their decay; 0: they do not decay",
+              "ours; sandstones have some 20 to 100, recalled"))
 CYCLES = Group("motion", (
     *CUT_MOTION,
     Parameter("start_up", 0.005, "s", duration, "time of the start-up cut", "[Rojek 2003, 9.1]"),
