@@ -335,3 +335,11 @@ def test_accelerated_wear_says_how_far_to_trust_it(cut):
     assert value(cut, "wear_distribution_error") > 0.05
     assert value(cut, "trusted_wear_acceleration") < 7000
     assert len(cut.summary["warnings"]) == 1 and "use wear_acceleration = " in cut.stderr
+
+
+def test_strong_damping_is_visited_often_enough(tmp_path):
+    """At most a fifth of the velocity in a visit, whatever the period."""
+    run = tooth_cycles(tmp_path / "out", background_damping=3e4, start_up=3e-4, cycles=0, heat="false", report="false")
+    assert run.code == 0, run.stderr
+    visits = run.summary["wall_time"]["by_engine"]["background_damping"]["visits"]
+    assert 1.0 <= 0.2 * visits / (3e4 * value(run, "simulated_time")) < 1.5
