@@ -354,6 +354,8 @@ def price(found):
             axes.errorbar(found[case]["cost"], value, np.nan_to_num(error), fmt="o", color=f"C{number}", capsize=3,
                           label=case.removeprefix(f"{EIGHT}, ").replace(BASE, "sixteen discs"))
         axes.set(xscale="log", ylim=(0, None), xlabel="minutes per metre", title=f"{title} over that of {EIGHT}")
+        axes.set_xticks([10, 20, 50, 100, 200, 500], [10, 20, 50, 100, 200, 500])
+        axes.minorticks_off()
     panels[0].legend(fontsize=8)
     return drawn
 
