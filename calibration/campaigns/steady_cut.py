@@ -19,7 +19,8 @@ from calibration.campaigns.runs import Runs, command_line, wait_for
 from rockwear.kernels import steady_record
 from rockwear.kernels.cut_sizes import cut_sizes
 from rockwear.kernels.cutting_envelope import (
-    ENERGY_TARGET, OVERBREAK_TARGET, PEAKS_TARGET, RELATIONS, expected, exponent)
+    ENERGY_TARGET, OVERBREAK_TARGET, PEAKS_TARGET, RELATIONS, SCRATCH_DEPTHS, SCRATCH_ENERGY, SCRATCH_STRENGTH,
+    SCRATCH_THRUST, expected, exponent)
 from rockwear.kernels.fragments import chip_length
 from rockwear.kernels.groove import groove_results
 from rockwear.kernels.steady_record import Measured
@@ -38,62 +39,95 @@ IN_TENSION = 1
 """Mode of a crack (cracks.csv) on which more work was spent in tension than in slip."""
 
 ROCK = dict(rock="crushing_sandstone")
-CUT = dict(depth_of_cut=5e-3, discs_per_depth=16, rake=-5.0, velocity=8.0, snapshot_period=5e-4, cut_length=0.06)
+CUT = dict(depth_of_cut=5e-3, discs_per_depth=16, rake=-5.0, velocity=4.0, snapshot_period=1e-3, cut_length=0.06)
 SHORT = 0.03
 """m of way with small discs."""
+DEPTHS = 0.3125e-3, 1.25e-3, 0.02
+"""m of other cuts, all lengths of which follow their depth: that of a scratch, and four times less and more."""
 BOX = dict(width=0.02, height=0.01)
 """Of the laboratory, m; loaded along its length; as much larger or smaller as the discs are."""
 SPEEDS = {"compression": 0.04, "tension": 0.02}
 """Of each platen, m/s."""
 
+
+
+def at_depth(depth):
+    """Parameters of a cut that is as CUT, but for its size. depth: m."""
+    size = depth / CUT["depth_of_cut"]
+    return dict(depth_of_cut=depth, tip_radius=5e-4 * size, cut_length=CUT["cut_length"] * size,
+                snapshot_period=CUT["snapshot_period"] * size)
+
+
+def strengths_times(factor):
+    """Bonds of ROCK with strengths so many times theirs, and the same lengths K^2 / strength^2."""
+    return dict(bond_tension=3e6 * factor, bond_cohesion=8.5e6 * factor, bond_crushing=480e6 * factor,
+                bond_fracture_energy=90.0 * factor**2, bond_shear_energy=1000.0 * factor**2)
+
+
+def depth_case(depth):
+    """Name of the case at this depth of cut (m)."""
+    return f"{EIGHT}, depth {1e3 * depth:.2g} mm"
+
+
 ROCKS = {
     BASE: ROCK,
     EIGHT: dict(ROCK, discs_per_depth=8),
     FINEST: dict(ROCK, discs_per_depth=32),
+    **{depth_case(depth): dict(ROCK, discs_per_depth=8, **at_depth(depth)) for depth in DEPTHS},
     **{f"{EIGHT}, {name}": dict(ROCK, discs_per_depth=8, **change) for name, change in {
+        "strengths halved": strengths_times(0.5),
+        "strengths times 1.4": strengths_times(1.4),
+        "bentheim": dict(rock="bentheim"),
+        "medium_sandstone": dict(rock="medium_sandstone"),
+        "p_sandstone": dict(rock="p_sandstone"),
         "no crushing": dict(bond_crushing=0.0),
         "crushing 150 MPa": dict(bond_crushing=150e6),
-        "crushing 250 MPa": dict(bond_crushing=250e6),
-        "crushing hardening 0.1": dict(crushing_hardening=0.1),
-        "bentheim": dict(rock="bentheim"),
         "no grains": dict(grain_edge=0.0),
-        "strengths halved": dict(bond_tension=1.5e6, bond_cohesion=4.25e6, bond_fracture_energy=22.5,
-                                 bond_shear_energy=250.0, bond_crushing=240e6),
         "Weibull modulus 2": dict(weibull_modulus=2.0),
-        "fracture energy 30": dict(bond_fracture_energy=30.0)}.items()}}
-"""Rocks that are cut as the base is."""
-HALVED, BENTHEIM = f"{EIGHT}, strengths halved", f"{EIGHT}, bentheim"
-PULLED = BASE, HALVED, BENTHEIM
+        "fracture energy 30": dict(bond_fracture_energy=30.0),
+        "fracture energy 5": dict(bond_fracture_energy=5.0)}.items()}}
+"""Rocks that are cut as the base is, at other depths of cut too: finer discs make another rock."""
+HALVED, STRONGER, BENTHEIM, MEDIUM, PADOVA = (f"{EIGHT}, {name}" for name in (
+    "strengths halved", "strengths times 1.4", "bentheim", "medium_sandstone", "p_sandstone"))
+PULLED = BASE, HALVED, STRONGER, BENTHEIM, MEDIUM, PADOVA
 """Rocks that are pulled in the laboratory, too; the others have the bonds of the base."""
 CHANGES = {
+    "velocity 8 m/s": dict(velocity=8.0, snapshot_period=5e-4),
+    "velocity 2 m/s": dict(velocity=2.0, snapshot_period=2e-3),
+    "window 1.5 times as long": dict(window_behind=0.018, window_ahead=0.06),
+    "window 1.5 times as high": dict(window_height=0.03),
+    "window 5 depths ahead": dict(window_ahead=0.025),
+    "boundary fixed": dict(boundary="fixed"),
+    "ends free": dict(boundary="free"),
+    "rake -15°": dict(rake=-15.0),
+    "rake 15°": dict(rake=15.0),
+    "clearance 20°": dict(clearance=20.0),
+    "tip 0.2 mm": dict(tip_radius=2e-4),
     "wear flat 1 mm": dict(wear_flat=1e-3),
     "wear flat 2 mm": dict(wear_flat=2e-3),
-    "rake -15°": dict(rake=-15.0),
-    "rake 10°": dict(rake=10.0),
-    "depth 2.5 mm": dict(depth_of_cut=2.5e-3, discs_per_depth=4),
-    "depth 10 mm": dict(depth_of_cut=0.01, discs_per_depth=16, cut_length=0.1),
-    "velocity 4 m/s": dict(velocity=4.0, snapshot_period=1e-3),
-    "velocity 2 m/s": dict(velocity=2.0, snapshot_period=2e-3),
     "tool friction 0.6": dict(tool_mu=0.6),
-    "clearance 20°": dict(clearance=20.0),
-    "window doubled": dict(window_behind=0.024, window_ahead=0.05, window_height=0.04),
-    "boundary fixed": dict(boundary="fixed"),
-    "grains not damped": dict(grain_quality=0.0),
     "damping 5000 1/s": dict(background_damping=5e3),
-    "time step 0.95": dict(time_step_fraction=0.95),
+    "damping 30000 1/s": dict(background_damping=3e4),
+    "grains not damped": dict(grain_quality=0.0),
+    "time step 0.8": dict(time_step_fraction=0.8),
 }
 """How else the rock of eight discs is cut: a twentieth of the cost of sixteen."""
 CUTS = {**{f"{EIGHT}, {name}": change for name, change in CHANGES.items()},
-        **{name: CHANGES[name] for name in ("wear flat 2 mm", "velocity 4 m/s")}}
+        **{name: CHANGES[name] for name in ("wear flat 2 mm", "velocity 8 m/s")}}
 """How else the rock that a case begins with is cut, or that of the base."""
 DRAWN = {BASE: "steady_cut", FINEST: "steady_cut_finest"}
 """{case: name of its figures}."""
 SETTINGS = BASE, FINEST, EIGHT, *(f"{EIGHT}, {name}" for name in (
-    "velocity 4 m/s", "velocity 2 m/s", "window doubled", "boundary fixed", "time step 0.95", "damping 5000 1/s"))
+    "velocity 8 m/s", "velocity 2 m/s", "window 1.5 times as long", "window 1.5 times as high", "window 5 depths ahead",
+    "boundary fixed", "time step 0.8"))
 """Cases that cut the same rock with the same tool: they differ in what they cost."""
 MOVED = 0.15
 """Part of specific energy and friction work by which a setting may move them."""
-JUDGED = BASE, EIGHT, FINEST, HALVED, BENTHEIM, f"{EIGHT}, depth 2.5 mm", f"{EIGHT}, depth 10 mm"
+JUDGED = BASE, EIGHT, FINEST, HALVED, STRONGER, BENTHEIM, MEDIUM, PADOVA, *map(depth_case, DEPTHS)
+OF_THE_CUT = {"discs_per_depth", *at_depth(1.0)}
+"""Parameters of a rock of ROCKS that the laboratory does not take."""
+AT_DEPTHS = *map(depth_case, DEPTHS[:2]), EIGHT, depth_case(DEPTHS[2])
+"""Cases that differ in size alone, by their depth of cut."""
 CASES = [BASE, *[name for name in ROCKS if name != BASE], *CUTS]
 
 COLUMNS = {"specific energy / UCS": "energy", "mean Fc, kN/m": "force", "peak / mean": "peaks",
@@ -123,12 +157,12 @@ def cut_of(case, seed):
 
 def test_of(rock, test, seed):
     """Parameters of a laboratory test: discs as in the cut, and a specimen that is as much larger as they are."""
-    values = {**CUT, **ROCKS[rock]}
-    sizes, base = (cut_sizes(CUT["depth_of_cut"], case["discs_per_depth"]) for case in (values, CUT))
+    sizes, base = (cut_sizes(case["depth_of_cut"], case["discs_per_depth"], velocity=CUT["velocity"])
+                   for case in ({**CUT, **ROCKS[rock]}, CUT))
     factor = sizes["radius_min"] / base["radius_min"]
     return {**{name: factor * length for name, length in BOX.items()},
             **{name: sizes[name] for name in ("radius_min", "radius_max")},
-            **{name: value for name, value in ROCKS[rock].items() if name != "discs_per_depth"},
+            **{name: value for name, value in ROCKS[rock].items() if name not in OF_THE_CUT},
             "test": test, "speed": SPEEDS[test], "seed": seed, "snapshot_period": 1, "report": "false"}
 
 
@@ -263,7 +297,7 @@ def envelope(folder, found):
         row, tension = found.get(case), strengths(folder, rock if rock in PULLED else BASE, "tension")
         if not row or not len(tension) or not math.isfinite(row["ucs"].value):
             continue
-        depth = CUTS.get(case, CUT).get("depth_of_cut", CUT["depth_of_cut"])
+        depth = depth_of(case)
         ours = {"mean_cutting_force": (row["force"], 1e-3, "kN/m"), "peak_over_mean": (row["peaks"], 1, ""),
                 "mean_peak_cutting_force": (row["peak"], 1e-3, "kN/m"),
                 "overbreak": (row["overbreak"], 1 / depth, "depths"),
@@ -284,10 +318,14 @@ def envelope(folder, found):
 def relations(found):
     """Rows of a table: what several cuts tell together, against RELATIONS."""
     ours, rows = {}, []
+    forces = {depth_of(case): found[case]["force"] for case in AT_DEPTHS if case in found}
+    for name, part in {"scratch_force_exponent": lambda depth: depth < 2e-3,
+                       "chip_force_exponent": lambda depth: depth > 1e-3}.items():
+        if sum(map(part, forces)) > 1:
+            depths = {depth: force for depth, force in forces.items() if part(depth)}
+            ours[name, EIGHT] = exponent(list(depths), *np.array(list(depths.values())).T)
     for rock in (BASE, EIGHT):
-        depths, rakes = (forces_over(found, rock, what) for what in ("depth_of_cut", "rake"))
-        if len(depths) > 1:
-            ours["chip_force_exponent", rock] = exponent(list(depths), *np.array(list(depths.values())).T)
+        rakes = forces_over(found, rock, "rake")
         if len(rakes) > 1:
             ours["force_over_rake", rock] = slope(np.radians(list(rakes)), *1e3 * np.array(list(rakes.values())).T)
     for name, change in CUTS.items():
@@ -304,6 +342,11 @@ def relations(found):
                 rows.append([case, one.case, f"{one.low:g} to {one.high:g} {one.unit}", one.basis, shown(measured),
                              one.verdict(*measured)])
     return rows
+
+
+def depth_of(case):
+    """m."""
+    return {**CUT, **ROCKS[rock_of(case)]}["depth_of_cut"]
 
 
 def forces_over(found, rock, what):
@@ -341,6 +384,29 @@ def resolution(found):
         axes.set_xticks(list(discs.values()), [f"{count} discs\n{found[case]['cost']:.0f} min/m"
                                                for case, count in discs.items()])
         axes.minorticks_off()
+    return drawn
+
+
+def over_depth(found):
+    """Figure: cuts of one rock that differ in size alone, over their depth of cut."""
+    cases = [case for case in AT_DEPTHS if case in found]
+    drawn, panels = plots.canvas(13, 3.6, 1, 4)
+    bands = {"energy": (SCRATCH_ENERGY[0] / SCRATCH_STRENGTH, SCRATCH_ENERGY[1] / SCRATCH_STRENGTH),
+             "peaks": PEAKS_TARGET, "overbreak": OVERBREAK_TARGET, "thrust": SCRATCH_THRUST}
+    for axes, (name, band) in zip(panels, bands.items()):
+        scratch = name in ("energy", "thrust")
+        axes.fill_between([min(SCRATCH_DEPTHS) * 1e3, 1e3 * max(SCRATCH_DEPTHS)] if scratch else [0.2, 30.0], *band,
+                          color="#dfe8d8", label="scratches, recalled" if scratch else "aimed at")
+        if name == "energy":
+            axes.plot([5.0, 5.0], ENERGY_TARGET, color="#8aa37b", linewidth=6, alpha=0.5, label="aimed at")
+        values, errors = np.array([found[case][name] for case in cases]).T
+        axes.errorbar([1e3 * depth_of(case) for case in cases], values, np.nan_to_num(errors), fmt="o-",
+                      color="#444444", capsize=3)
+        axes.set(xscale="log", ylim=(0, None), xlim=(0.2, 30), xlabel="depth of cut, mm",
+                 title=next(words for words, of in COLUMNS.items() if of == name))
+        axes.set_xticks([0.3, 1, 5, 20], ["0.3", "1", "5", "20"])
+        axes.minorticks_off()
+        axes.legend(fontsize=8)
     return drawn
 
 
@@ -387,6 +453,10 @@ def write(folder):
             resolution(found).savefig(files[-1])
             files.append(folder / "steady_cut_price.png")
             price(found).savefig(files[-1])
+    if sum(case in found for case in AT_DEPTHS) > 2:
+        with matplotlib.rc_context(plots.STYLE):
+            files.append(folder / "steady_cut_depths.png")
+            over_depth(found).savefig(files[-1])
     with open(files[0], "w", encoding="utf-8", newline="") as file:
         csv.writer(file).writerows([["case", "quantity", "mean", "standard error"],
                                     *([case, name, *value] for case, row in found.items()
