@@ -13,6 +13,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from calibration.campaigns import yade_job
+from calibration.command import Parser, help_if_asked, split
 from calibration.generated import ROOT
 from rockwear.kernels.checks import ParameterError, require
 from rockwear.model import rock_file
@@ -194,7 +195,7 @@ def placement(words):
 
     Ends the program with exit code 2 where they cannot be used.
     """
-    parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False, argument_default=argparse.SUPPRESS)
+    parser = Parser(add_help=False, allow_abbrev=False, argument_default=argparse.SUPPRESS)
     add_placement(parser)
     found, others = parser.parse_known_args(words)
     try:
@@ -211,15 +212,15 @@ def placement(words):
 def command_line(campaign, cases=(), flags=("--read",)):
     """(folder, the other words, {option of Runs: value}) of the command line DIR [CASE ...] [FLAG ...] [where to run].
 
-    campaign: a module's name; cases, flags: words that may follow the folder. Ends the program with exit code 2 and one
-    line where it cannot be used.
+    campaign: a module's name; cases, flags: words that may come with the folder. Ends the program: after the usage
+    where --help asks for it, with exit code 2 and one line where the words cannot be used.
     """
+    help_if_asked()
     where, words = placement(sys.argv[1:])
-    if not words or set(words[1:]) - {*cases, *flags}:
-        usage = ["usage: python3 -m", campaign, "DIR", *(f"[{word}]" for word in (*cases, *flags)), PLACEMENT]
-        print(*usage, file=sys.stderr)
-        sys.exit(2)
-    return Path(words[0]), words[1:], where
+    known = *cases, *flags
+    (folder,), words = split(words, campaign, " ".join(["DIR", *(f"[{word}]" for word in known), PLACEMENT]),
+                             known=known)
+    return folder, words, where
 
 
 def add_placement(parser):

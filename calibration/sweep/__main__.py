@@ -23,6 +23,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from calibration.campaigns import runs, yade_job
+from calibration.command import Parser
 from calibration.generated import ROOT
 from calibration.sweep import page, slurm
 from calibration.sweep.progress import Progress
@@ -127,8 +128,8 @@ def run_one(row):
 
 def main(words):
     """-> exit code."""
-    parser = argparse.ArgumentParser(prog="python3 -m calibration.sweep", description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = Parser(prog="python3 -m calibration.sweep", description=__doc__,
+                    formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("table", metavar="TABLE", help="a table of yade-batch")
     parser.add_argument("script", metavar="SCRIPT", help="a YADE script of a scene, yade_scripts/steady_cut.py for one")
     parser.add_argument("--out", metavar="DIR", help="folder of the results (default: the table's column out, else "
