@@ -15,6 +15,7 @@ from pathlib import Path
 from calibration.campaigns import yade_job
 from calibration.command import Parser, help_if_asked, split
 from calibration.generated import ROOT
+from rockwear import __version__
 from rockwear.kernels.checks import ParameterError, require
 from rockwear.model import rock_file
 from rockwear.report.folder import RunFolder
@@ -91,7 +92,7 @@ class Runs:
     """Runs in subfolders of `folder`, `at_once` at a time on this machine, or as many as the workers of `scheduler` (an
     address) take.
 
-    With `keep`, runs that finished with the same values and the same input files are not repeated. Use it as a context:
+    With `keep`, runs that `finished` are not repeated, and others resume from their checkpoints. Use it as a context:
     an exception within it stops the runs under way, which resume when they are started again.
     """
 
@@ -252,14 +253,15 @@ def wait_for(jobs, words):
 
 
 def finished(folder, values):
-    """True for a folder with the summary of a run that finished, with these values and the same input files."""
+    """True for a folder with the summary of a run that finished, with these values, the same input files and this
+    version of rockwear: another one may find other results, and one table is not to mix them."""
     try:
         summary = RunFolder(folder).summary
-        parameters = summary["parameters"]
+        parameters, version = summary["parameters"], summary["versions"]["rockwear"]
         same_files = all(digest(_path(name, parameters[name])) == found for name, found in summary["files"].items())
     except (OSError, ValueError, KeyError):
         return False
-    return summary["exit_code"] == 0 and same_files and all(
+    return summary["exit_code"] == 0 and version == __version__ and same_files and all(
         name in parameters and _same(parameters[name], value) for name, value in values.items())
 
 

@@ -117,7 +117,7 @@ def main(path, folders):
     generated.record(path)
     print(generated.write_page(path.with_suffix(".md"), generated.table(
         ["tool", "wear acceleration", "friction on the tool, % of its work", "worn volume over wear acceleration, µm²",
-         "seeds"], rows)))
+         "seeds"], rows), folders))
 
 
 if __name__ == "__main__":

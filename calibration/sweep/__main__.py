@@ -5,8 +5,9 @@
 
 A row is a run of SCRIPT in DIR/ROW, named by the table's description, with the values of the row as its parameters; its
 words go to DIR/ROW.log. All rows are checked before the first one runs. The same command again keeps the rows that have
-finished and resumes the others from their checkpoints. Writes sweep.html and sweep.csv into DIR. Exit code 0: all rows
-are done; 1: some failed, each said in one line; 2: bad input, said in one line; 128 + n: stopped by signal n.
+finished with this version of rockwear and resumes the others from their checkpoints. Writes sweep.html and sweep.csv
+into DIR. Exit code 0: all rows are done; 1: some failed, each said in one line; 2: bad input, said in one line; 128 +
+n: stopped by signal n.
 
 On a cluster, start `dask scheduler` on one machine and `dask worker ADDRESS --nthreads N` on each, N rows at a time;
 all see the same folders. A worker lost in mid-row costs one checkpoint interval, and the row goes on elsewhere; the

@@ -6,6 +6,7 @@ import sys
 
 import pytest
 
+from calibration import generated
 from calibration.benchmarks import __main__ as bench
 from calibration.benchmarks import loading_speed, particle_size
 from calibration.campaigns import granular, sharp_and_worn, steady_cut, tip_temperature, uniaxial, wear
@@ -15,6 +16,7 @@ from calibration.fitting.rock_unknowns import Micro
 from calibration.fitting.rock_targets import Targets
 from calibration.fitting.rock_tests import Laboratory
 from calibration.validation import __main__ as validation
+from rockwear import __version__
 from rockwear.run.checkpoint import digest
 
 from tests.running import ROOT, run_script
@@ -117,10 +119,17 @@ def test_every_run_that_is_started_has_parameters_that_its_scene_takes(tmp_path)
     assert len(cases) > 150 and json.loads(checks.read_text(encoding="utf-8")) == []
 
 
+def store(folder, values, files=(), version=__version__):
+    """The summary of a run that finished."""
+    folder.mkdir(exist_ok=True)
+    (folder / "summary.json").write_text(json.dumps({
+        "exit_code": 0, "versions": {"rockwear": version}, "files": dict(files), "parameters": values}),
+        encoding="utf-8")
+
+
 def test_a_finished_run_is_kept_only_for_the_same_values(tmp_path):
     assert not finished(tmp_path, {})
-    stored = {"exit_code": 0, "files": {}, "parameters": {"kn": 2e10, "heat": False, "test": "tension"}}
-    (tmp_path / "summary.json").write_text(json.dumps(stored), encoding="utf-8")
+    store(tmp_path, {"kn": 2e10, "heat": False, "test": "tension"})
     assert finished(tmp_path, {"kn": "2e10", "heat": "false", "test": "tension"})
     assert not finished(tmp_path, {"kn": 1e10}) and not finished(tmp_path, {"kt": 1e10})
 
@@ -130,11 +139,30 @@ def test_a_finished_run_is_kept_only_for_the_same_files(tmp_path):
     outline.write_text("0,0", encoding="utf-8")
     given = {"rock": "m_sandstone", "outline": str(outline)}
     files = {"rock": digest(ROOT / "rockwear/rocks/m_sandstone.json"), "outline": digest(outline)}
-    (tmp_path / "summary.json").write_text(json.dumps({"exit_code": 0, "files": files, "parameters": given}),
-                                           encoding="utf-8")
+    store(tmp_path, given, files)
     assert finished(tmp_path, given)
     outline.write_text("0,1", encoding="utf-8")
     assert not finished(tmp_path, given)
+
+
+def test_a_finished_run_of_another_version_is_repeated(tmp_path):
+    store(tmp_path, {"kn": 2e10})
+    assert finished(tmp_path, {"kn": 2e10})
+    store(tmp_path, {"kn": 2e10}, version="0.1.0")
+    assert not finished(tmp_path, {"kn": 2e10})
+    (tmp_path / "summary.json").write_text('{"exit_code": 0, "files": {}, "parameters": {}}', encoding="utf-8")
+    assert not finished(tmp_path, {})
+
+
+def test_tables_name_the_versions_of_their_runs_where_one_is_another(tmp_path):
+    for name, version in (("a", "0.1.0"), ("b", __version__), ("c", __version__)):
+        store(tmp_path / name, {}, version=version)
+    page = tmp_path / "page.md"
+    text = generated.write_page(page, ["words"])
+    assert text == page.read_text(encoding="utf-8") and text.endswith(
+        f"\n\n**Runs, by version of rockwear: 1 by 0.1.0, 2 by {__version__}; this is {__version__}.**\n\nwords\n")
+    assert "Runs, by" not in generated.write_page(page, ["words"], [tmp_path / "b", tmp_path / "c"])
+    assert "1 by 0.1.0;" in generated.write_page(page, ["words"], [tmp_path / "a"])
 
 
 def test_a_run_that_fails_says_so(tmp_path):

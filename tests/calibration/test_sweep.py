@@ -17,6 +17,7 @@ import pytest
 from calibration.campaigns import runs, yade_job
 from calibration.sweep import __main__ as sweep
 from calibration.sweep import page, slurm
+from rockwear import __version__
 from tests.running import ROOT
 
 SCRIPT = str(ROOT / "yade_scripts/uniaxial.py")
@@ -190,7 +191,8 @@ def test_the_page_draws_each_swept_parameter_and_links_the_reports(tmp_path):
         (folder / "report.html").write_text("", encoding="utf-8")
         values = {"depth": depth, "kind": kind, "kn": 1e9}
         (folder / "summary.json").write_text(json.dumps({
-            "exit_code": 0, "files": {}, "parameters": values, "wall_time": {"total": 60}, "results": {
+            "exit_code": 0, "versions": {"rockwear": __version__},
+            "files": {}, "parameters": values, "wall_time": {"total": 60}, "results": {
                 "mean_cutting_force": {"value": 1e6 * depth, "unit": "N/m"}, "same": {"value": 1.0, "unit": "-"},
                 "name": {"value": "none", "unit": "-"}}}), encoding="utf-8")
         rows.append(sweep.Row(folder.name, {"depth": "", "kind": ""}, values, 1, folder, {}))
