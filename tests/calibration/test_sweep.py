@@ -3,12 +3,14 @@ import csv
 import json
 import os
 import re
+import shlex
 import signal
 import subprocess
 import threading
 import time
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from unittest import mock
 
 import numpy as np
@@ -181,6 +183,35 @@ def test_a_job_array_runs_a_row(swept):
     done = subprocess.run(["bash", str(file)], env={**os.environ, "SLURM_ARRAY_TASK_ID": "3"}, capture_output=True,
                           encoding="utf-8")
     assert done.returncode == 1 and "failed: impossible ended with 2: error: radius_max" in done.stderr
+
+
+@pytest.mark.parametrize("number, requeued", [(signal.SIGUSR1, ["7_2 checkpoint"]), (signal.SIGTERM, []), (None, [])])
+def test_a_job_is_queued_again_at_its_time_limit_alone(tmp_path, monkeypatch, number, requeued):
+    """A row that waits for SIGTERM, writes its checkpoint and ends as a row does, or that fails with a code as high."""
+    folder = tmp_path / "a folder, 50 %"
+    folder.mkdir()
+    row, file = folder / "row", folder / "array.sh"
+    row.write_text("#!/bin/bash\ntrap 'sleep 0.5; touch checkpoint; exit 143' TERM\ntouch begun\n" + (
+        "exit 143" if number is None else "while :; do sleep 0.05; done") + "\n", encoding="utf-8")
+    (folder / "scontrol").write_text('#!/bin/bash\necho "$2" checkpoin* > requeued\n', encoding="utf-8")
+    for program in (row, folder / "scontrol"):
+        program.chmod(0o755)
+    monkeypatch.chdir(folder)
+    monkeypatch.setattr(slurm.sys, "executable", str(row))
+    assert slurm.write(file, [SimpleNamespace(threads=2)], "rows.table", SCRIPT, folder) == 0
+    options = [shlex.split(line.removeprefix("#SBATCH ")) for line in file.read_text(encoding="utf-8").splitlines()
+               if line.startswith("#SBATCH ")]
+    assert [f"--output={folder}/slurm-%a.log".replace(" %/", " %%/")] in options and ["--signal=B:USR1@120"] in options
+    process = subprocess.Popen(["bash", str(file)], env={
+        **os.environ, "PATH": f"{folder}:{os.environ['PATH']}", "SLURM_JOB_ID": "9", "SLURM_ARRAY_JOB_ID": "7",
+        "SLURM_ARRAY_TASK_ID": "2"})
+    deadline = time.time() + 60
+    while not (folder / "begun").exists() and time.time() < deadline:
+        time.sleep(0.02)
+    if number:
+        process.send_signal(number)
+    assert process.wait(60) == 143 and (folder / "checkpoint").exists() == bool(number)
+    assert [file.read_text(encoding="utf-8").strip() for file in folder.glob("requeued")] == requeued
 
 
 def test_the_page_draws_each_swept_parameter_and_links_the_reports(tmp_path):
