@@ -9,8 +9,8 @@ from calibration.generated import ROOT
 ARRAY = """\
 #!/bin/bash
 # sbatch {file}
-# A row a job. Two minutes before its time limit (and before preemption, with PreemptParameters=send_user_signal) it gets
-# SIGUSR1, writes a checkpoint and is queued again. At SIGTERM (scancel) it writes a checkpoint and is not: `sbatch` of
+# A row a job. Two minutes before its time limit (and before preemption, where PreemptParameters=send_user_signal) it
+# gets SIGUSR1, writes a checkpoint and is queued again. At SIGTERM (scancel) it writes one and is not: `sbatch` of
 # this file once more runs the rows that are missing. The page, when all have ended: the command below without --row.
 #SBATCH --job-name=rockwear
 #SBATCH --array=1-{count}

@@ -1,8 +1,10 @@
 """Command lines of all commands of calibration: help and unknown options, before anything is made."""
 import ast
 import importlib.util
+import os
 import re
 import runpy
+import subprocess
 import sys
 
 import pytest
@@ -63,3 +65,13 @@ def test_an_unknown_option_is_refused_in_one_line(run, command):
     for words in (["--no-such"], ["DIR", "--no-such"]):
         code, said, wrong = run(command, *words)
         assert code == 2 and not said and wrong.count("\n") == 1 and wrong.startswith(("error: ", "usage: "))
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_a_python_without_the_packages_is_told_in_one_line_which_one_to_use(command, tmp_path):
+    """-S leaves the folder of installed packages out."""
+    done = subprocess.run([sys.executable, "-S", "-m", command, "--help"], cwd=tmp_path, capture_output=True,
+                          encoding="utf-8", env={**os.environ, "PYTHONPATH": str(ROOT)})
+    assert done.returncode == 2 and done.stderr.count("\n") == 1
+    assert done.stderr.endswith(" has no numpy, scipy, matplotlib: use /usr/bin/python3, whose packages `make setup` "
+                                "installs\n")
