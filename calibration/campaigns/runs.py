@@ -13,6 +13,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from calibration.campaigns import yade_job
+from calibration.campaigns.progress import Progress
 from calibration.command import Parser, help_if_asked, split
 from calibration.generated import ROOT
 from rockwear import __version__
@@ -64,8 +65,13 @@ def job(script, folder, words=(), threads=1, environment=None):
 class Started:
     """A run that has been queued or was there already."""
 
-    def __init__(self, folder, future=None):
-        self.folder, self.future = Path(folder), future
+    def __init__(self, folder, future=None, log=None):
+        self.folder, self.future, self.log = Path(folder), future, log
+
+    @property
+    def over(self):
+        """Whether the run has ended."""
+        return self.future is None or self.future.done()
 
     def exception(self):
         """RunFailed, or None; waits for the run."""
@@ -135,16 +141,7 @@ class Runs:
         import cloudpickle
         cloudpickle.register_pickle_by_value(yade_job)
         self.futures.append(self.client.submit(yade_job.run_on_worker, one, pure=False))
-        return Started(one["folder"], self.futures[-1])
-
-    def wait_for_next(self, started, timeout):
-        """Wait until one of these Started has ended, at most so many seconds."""
-        import distributed
-        try:
-            distributed.wait([one.future for one in started], timeout=timeout, return_when="FIRST_COMPLETED")
-        except GONE:
-            # TimeoutError is an OSError; one whose scheduler was lost says so itself.
-            pass
+        return Started(one["folder"], self.futures[-1], one["log"])
 
     def _connect(self):
         if self.scheduler:
@@ -239,13 +236,42 @@ def _count(word):
     return int(word)
 
 
+def as_they_end(started):
+    """Each of these Started once it has ended; a line says how all of them stand, and the time left, in between."""
+    left = list(dict.fromkeys(started))
+    progress = Progress(left) if any(not one.over for one in left) else None
+    while left:
+        ended, left = [one for one in left if one.over], [one for one in left if not one.over]
+        for one in ended:
+            if progress:
+                progress.failed += one.exception() is not None
+                progress.clear()
+            yield one
+        if progress:
+            progress.show()
+        if left:
+            _wait_for_next(left, progress.period)
+    if progress:
+        progress.close()
+
+
+def _wait_for_next(started, timeout):
+    """Wait until one of these Started has ended, at most so many seconds."""
+    import distributed
+    try:
+        distributed.wait([one.future for one in started], timeout=timeout, return_when="FIRST_COMPLETED")
+    except GONE:
+        # TimeoutError is an OSError; one whose scheduler was lost says so itself.
+        pass
+
+
 def wait_for(jobs, words):
     """Wait for runs {key: Started}; print words(key, folder) of each, or why it failed. -> 1 where one failed, else
     0."""
-    failed = 0
-    for key, one in jobs.items():
+    failed, key_of = 0, {one: key for key, one in jobs.items()}
+    for one in as_they_end(jobs.values()):
         try:
-            print(words(key, one.result()), flush=True)
+            print(words(key_of[one], one.result()), flush=True)
         except RunFailed as error:
             print(error, file=sys.stderr, flush=True)
             failed = 1

@@ -27,7 +27,6 @@ from calibration.campaigns import runs, yade_job
 from calibration.command import Parser
 from calibration.generated import ROOT
 from calibration.sweep import page, slurm
-from calibration.sweep.progress import Progress
 from rockwear.kernels.checks import ParameterError, require
 from rockwear.report.folder import RunFolder
 
@@ -97,23 +96,12 @@ def _common_out(rows):
 
 def run_all(rows, folder, **where):
     """Run the rows that are not done; a row that fails has its `failure` set."""
-    missing = [row for row in rows if not row.done]
-    progress = Progress(rows)
-    if not missing:
-        return
     with runs.Runs(folder, keep=True, **where) as started:
-        waiting = {row.name: started.submit(row.job) for row in missing}
-        left = {row.name: row for row in missing}
-        while left:
-            for name in [name for name in left if waiting[name].future.done()]:
-                row = left.pop(name)
-                row.failure = str(waiting[name].exception() or "")
-                if row.failure:
-                    progress.say(f"failed: {row.failure}", sys.stderr)
-            progress.show(left)
-            if left:
-                started.wait_for_next([waiting[name] for name in left], progress.period)
-    progress.close()
+        row_of = {runs.Started(row.folder) if row.done else started.submit(row.job): row for row in rows}
+        for one in runs.as_they_end(row_of):
+            row_of[one].failure = str(one.exception() or "")
+            if row_of[one].failure:
+                print(f"failed: {row_of[one].failure}", file=sys.stderr, flush=True)
 
 
 def run_one(row):

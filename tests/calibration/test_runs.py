@@ -1,16 +1,20 @@
 """Runs that campaigns, benchmarks and validations start: kept, repeated or failed; their parameters are accepted."""
+import itertools
 import json
 import os
+import re
 import subprocess
 import sys
+from concurrent.futures import Future
+from types import SimpleNamespace
 
 import pytest
 
 from calibration import generated
 from calibration.benchmarks import __main__ as bench
 from calibration.benchmarks import loading_speed, particle_size
-from calibration.campaigns import granular, sharp_and_worn, steady_cut, tip_temperature, uniaxial, wear
-from calibration.campaigns.runs import RunFailed, Runs, finished
+from calibration.campaigns import granular, progress, sharp_and_worn, steady_cut, tip_temperature, uniaxial, wear
+from calibration.campaigns.runs import RunFailed, Runs, Started, finished, wait_for
 from calibration.fitting import rock_fit
 from calibration.fitting.rock_unknowns import Micro
 from calibration.fitting.rock_targets import Targets
@@ -163,6 +167,37 @@ def test_tables_name_the_versions_of_their_runs_where_one_is_another(tmp_path):
         f"\n\n**Runs, by version of rockwear: 1 by 0.1.0, 2 by {__version__}; this is {__version__}.**\n\nwords\n")
     assert "Runs, by" not in generated.write_page(page, ["words"], [tmp_path / "b", tmp_path / "c"])
     assert "1 by 0.1.0;" in generated.write_page(page, ["words"], [tmp_path / "a"])
+
+
+def test_campaigns_say_how_their_runs_stand_and_what_ends_first_first(tmp_path, monkeypatch, capsys):
+    runs = {name: Started(tmp_path / name, Future(), tmp_path / f"{name}.log") for name in ("slow", "bad", "fast")}
+    runs["kept"] = Started(tmp_path / "kept")
+    for folder in ("slow", "fast", "kept"):
+        store(tmp_path / folder, {})
+    for name, part in (("slow", "50.0"), ("bad", "10.0")):
+        runs[name].log.write_text(f"cut  1.0 %  t = 0\ncut  {part} %  t = 1 ms  1 min left\n", encoding="utf-8")
+    endings = iter([("fast", (0, "")), ("bad", (1, "error: k")), ("slow", (0, ""))])
+
+    def end_next(left, timeout):
+        name, ending = next(endings)
+        runs[name].future.set_result(ending)
+
+    monkeypatch.setattr("calibration.campaigns.runs._wait_for_next", end_next)
+    monkeypatch.setattr(progress, "time", SimpleNamespace(time=itertools.count(0, 100).__next__))
+    assert wait_for(runs, lambda key, run: key) == 1
+    said, failed = capsys.readouterr()
+    assert failed == "bad ended with 1: error: k\n"
+    lines = said.splitlines()
+    assert lines[1].endswith(", time left not known yet") and re.search(r", \d+ min \d+ s left$", lines[3])
+    assert [line.split(" %")[0] for line in lines] == [
+        "kept", "1 of 4 runs done, 0 failed, 40.0", "fast", "2 of 4 runs done, 0 failed, 65.0",
+        "2 of 4 runs done, 1 failed, 87.5", "slow", "3 of 4 runs done, 1 failed, 100.0"]
+
+
+def test_a_campaign_whose_runs_are_all_kept_says_nothing_of_time(tmp_path, capsys):
+    store(tmp_path / "kept", {})
+    assert wait_for({"kept": Started(tmp_path / "kept")}, lambda key, run: key) == 0
+    assert capsys.readouterr().out == "kept\n"
 
 
 def test_a_run_that_fails_says_so(tmp_path):
