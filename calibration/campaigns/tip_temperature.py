@@ -10,7 +10,6 @@ a JSON file for each scene and provenance.json into DIR.
 SCENES lists for each scene its script, its values, and the temperatures (K) among its results.
 """
 import json
-import sys
 
 import numpy as np
 

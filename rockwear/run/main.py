@@ -32,7 +32,8 @@ COMMON = Group("output", (
 ))
 FOLDERS = "snapshots", "checkpoint", "figures", "vtk"
 """Folders that a new run empties."""
-FILES = "summary.json", "history.csv", "cracks.csv", "turns.csv", "wear_profile.csv", "tool.stl", "report.html"
+FILES = ("summary.json", "history.csv", "cracks.csv", "groove.csv", "chips.csv", "turns.csv", "wear_profile.csv",
+         "tool_fields.csv", "warming.csv", "errors.csv", "tool.stl", "report.html")
 """Files that a new run removes."""
 HISTORY = "history.f8"
 """In the folder checkpoint: the rows of history.csv, 8 bytes a number; a checkpoint says how many of them count."""
@@ -187,7 +188,10 @@ class Run:
             signal.signal(number, self._on_signal)
         ended, code = "finished", 0
         try:
-            if not self.values["resume"]:
+            if self.values["resume"]:
+                # What was written may be later than the checkpoint.
+                self._write_tables(self.scene.output.growing_tables())
+            else:
                 self._checkpoint()
             self._loop()
         except RunEnded as end:
@@ -280,15 +284,19 @@ class Run:
         begin = time.time()
         state = {"scene": self.scene.state(), "snapshots": self.snapshots, "next_snapshot": self.next_snapshot,
                  "wall_time": self.wall_before + time.time() - self.began}
+        self._write_tables(self.scene.output.growing_tables())
         with naming(self.folder / "checkpoint"):
             checkpoint.save(self.folder / "checkpoint", identity=self.identity, state=state,
                             write_scenes=lambda directory: self.scene.save(directory, self.folder))
         self.checkpoint_time += time.time() - begin
 
+    def _write_tables(self, tables):
+        for name, (header, rows) in tables.items():
+            write_table(self.folder / name, header, rows)
+
     def _write_summary(self, ended, code, warnings):
         scene = self.scene
-        for name, (header, rows) in scene.output.tables().items():
-            write_table(self.folder / name, header, rows)
+        self._write_tables(scene.output.tables())
         ours = {engine.name: {"seconds": engine.wall_time, "visits": engine.visits} for engine in scene.engines}
         python = sum(engine.wall_time for engine in scene.engines)
         summary = {

@@ -66,6 +66,7 @@ def kill_worker(folder, found):
     with np.load(folder / f"checkpoint/{found['set']}/state.npz") as state:
         found["saved rows"] = int(state["scene/engines/recorder/rows"])
     found["history"] = (folder / "history.csv").read_bytes()
+    found["cracks"] = (folder / "cracks.csv").read_bytes()
 
 
 @pytest.fixture(scope="module")
@@ -100,6 +101,7 @@ def test_a_row_whose_worker_is_killed_goes_on_elsewhere_and_differs_in_no_bit(sw
 def test_a_killed_run_has_its_rows_so_far_on_the_disk(swept):
     out, _, notes, _ = swept
     assert (out / "never/history.csv").read_bytes().startswith(notes["history"])
+    assert (out / "never/cracks.csv").read_bytes().startswith(notes["cracks"]) and notes["cracks"].endswith(b"\n")
     # Of the chunk that was under way, too.
     assert notes["history"].endswith(b"\n") and notes["history"].count(b"\n") > 1 + notes["saved rows"] > 100
 

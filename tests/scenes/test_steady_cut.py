@@ -50,10 +50,19 @@ def test_the_window_moves_and_the_balance_closes(never):
 
 def test_a_cut_goes_on_as_if_it_was_never_stopped(never, tmp_path):
     options = {**SMALL, **never.options, "checkpoint_interval": 0.01}
-    stopped = interrupt_script(SCRIPT, tmp_path / "again", signal.SIGTERM, 6, **options)
+    out, tables = tmp_path / "again", ("cracks.csv", "groove.csv", "chips.csv")
+    killed = interrupt_script(SCRIPT, out, signal.SIGKILL, 7, **options)
+    assert killed.code == -signal.SIGKILL, killed.stderr
+    # All cracks up to the last checkpoint, the groove and the chips of then.
+    cracks, groove, chips = ((out / name).read_text(encoding="utf-8") for name in tables)
+    assert (never.out / "cracks.csv").read_text(encoding="utf-8").startswith(cracks)
+    assert cracks.count("\n") > 1 and groove.count("\n") > 1 and chips.startswith("distance [m],")
+    for name in tables:
+        (out / name).write_text("later than the checkpoint", encoding="utf-8")
+    stopped = interrupt_script(SCRIPT, out, signal.SIGTERM, 8, **options)
     assert stopped.code == 128 + signal.SIGTERM, stopped.stderr
-    resumed = steady_cut(tmp_path / "again", "--resume", **never.options, checkpoint_interval=0.01)
-    assert_as_if_never_stopped(resumed, never)
+    resumed = steady_cut(out, "--resume", **never.options, checkpoint_interval=0.01)
+    assert_as_if_never_stopped(resumed, never, *tables)
 
 
 def test_segments_go_as_far_and_the_process_takes_as_long_as_it_is_slower(tmp_path):
