@@ -142,7 +142,7 @@ class Run:
         self.name, self.scene, self.values, self.folder, self.began = name, scene, values, folder, began
         self.identity = identity
         self.stopped_by = None
-        self.snapshots = 0
+        self.snapshots, self.memory = 0, []
         self.next_snapshot = 0.0
         self.wall_before = 0.0
         self.setup_time = self.loop_time = self.checkpoint_time = 0.0
@@ -276,6 +276,7 @@ class Run:
             np.savez_compressed(file, **self.scene.output.snapshot())
         if self.values["vtk"]:
             self.scene.output.write_vtk(self.folder / "vtk", self.snapshots)
+        self.memory.append((self.scene.time, resident_memory()))
         self.snapshots += 1
         period = self.values["snapshot_period"]
         self.next_snapshot = period * (math.floor(self.scene.time / period + 1e-9) + 1)
@@ -311,10 +312,18 @@ class Run:
             "wall_time": {"unit": "s", "total": self.wall_before + time.time() - self.began, "set_up": self.setup_time,
                           "loop": self.loop_time, "python_engines": python, "yade": self.loop_time - python,
                           "checkpoints": self.checkpoint_time, "by_engine": ours},
+            # Of this process: a resumed run begins anew.
+            "memory": {"unit": "bytes", "time": [time for time, _ in self.memory],
+                       "resident": [memory for _, memory in self.memory]},
             "peak_memory": {"value": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024, "unit": "bytes"},
         }
         with replacing(self.folder / "summary.json") as file:
             file.write(json.dumps(summary, indent=1, allow_nan=True).encode())
+
+
+def resident_memory():
+    """Bytes of memory that this process has now."""
+    return int(Path("/proc/self/statm").read_text(encoding="ascii").split()[1]) * resource.getpagesize()
 
 
 def _plain(value):

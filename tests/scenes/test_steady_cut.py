@@ -1,6 +1,7 @@
 """The steady cut: a window that moves along, with closed balances, bit-equal restarts and rock at rest left at rest."""
 import signal
 
+import numpy as np
 import pytest
 
 from tests.running import (
@@ -46,6 +47,13 @@ def test_the_window_moves_and_the_balance_closes(never):
     if "control_radius" in never.options:
         # Absent particles have no density, reduced radii no less mass.
         assert_density_is_shown(never.out, never.options["control_radius"], 2500.0)
+
+
+def test_memory_stays_flat_as_the_cut_goes_on(never):
+    """Ten thousand steps over the second half, in which the window moves on and bonds break, take at most 8 MB."""
+    memory = never.summary["memory"]
+    middle, end = (np.interp(part * memory["time"][-1], memory["time"], memory["resident"]) for part in (0.5, 1.0))
+    assert 1e8 < middle <= never.summary["peak_memory"]["value"] and end - middle < 8e6
 
 
 def test_a_cut_goes_on_as_if_it_was_never_stopped(never, tmp_path):
