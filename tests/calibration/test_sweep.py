@@ -4,8 +4,10 @@ import json
 import os
 import re
 import shlex
+import shutil
 import signal
 import subprocess
+import sys
 import threading
 import time
 from dataclasses import replace
@@ -122,6 +124,46 @@ def test_finished_rows_are_kept(swept, monkeypatch):
     monkeypatch.setattr(runs.Runs, "_connect", None)
     sweep.run_all(rows[:2], out)
     assert not replace(rows[0], values={**rows[0].values, "kn": 1.0}).done
+
+
+@pytest.fixture
+def cluster(tmp_path):
+    """(address of a dask scheduler, file with a line for each run of YADE) of a worker that knows nothing of ours."""
+    programs, file, ran = tmp_path / "programs", tmp_path / "scheduler.json", tmp_path / "ran"
+    programs.mkdir()
+    yade = programs / "yade"
+    yade.write_text(f'#!/bin/sh\necho run >> "{ran}"\nexec {shutil.which("yade")} "$@"\n', encoding="utf-8")
+    yade.chmod(0o755)
+    environment = {**os.environ, "PATH": f"{programs}:{os.environ['PATH']}"}
+    environment.pop("PYTHONPATH", None)
+    options = dict(cwd=programs, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    own = ["--host", "127.0.0.1", "--no-dashboard"]
+    started = [subprocess.Popen(["dask-scheduler", *own, "--port", "0", "--scheduler-file", str(file)], **options),
+               subprocess.Popen(["dask-worker", *own, "--no-nanny", "--nthreads", "2", "--scheduler-file", str(file),
+                                 "--local-directory", str(programs)], **options)]
+    deadline = time.time() + 120
+    while not file.exists() and time.time() < deadline:
+        time.sleep(0.1)
+    yield json.loads(file.read_text(encoding="utf-8"))["address"], ran
+    for process in reversed(started):
+        process.terminate()
+        process.wait(60)
+
+
+@pytest.mark.skipif(not (shutil.which("dask-scheduler") and shutil.which("dask-worker")), reason="no commands of dask")
+def test_a_sweep_runs_on_the_worker_of_a_scheduler(cluster, tmp_path):
+    address, ran = cluster
+    assert address.startswith("tcp://127.0.0.1:")
+    words = table(tmp_path / "rows.table", "description seed " + " ".join(ROW),
+                  *(f"row{seed} {seed} " + " ".join(map(str, ROW.values())) for seed in (1, 2)))
+    done = subprocess.run(
+        [sys.executable, "-m", "calibration.sweep", words, SCRIPT, "--out", str(tmp_path / "out"), "--scheduler",
+         address], cwd=tmp_path, env={**os.environ, "PYTHONPATH": str(ROOT)}, capture_output=True, encoding="utf-8")
+    assert done.returncode == 0 and "2 of 2 rows are done, 0 failed" in done.stdout, done.stdout + done.stderr
+    assert "2 of 2 runs done, 0 failed, 100.0 %" in done.stdout
+    for seed in (1, 2):
+        assert json.loads((tmp_path / f"out/row{seed}/summary.json").read_text(encoding="utf-8"))["seed"] == seed
+    assert len(ran.read_text(encoding="utf-8").splitlines()) == 2
 
 
 @pytest.mark.parametrize("header, row, line", [
