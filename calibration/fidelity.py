@@ -25,6 +25,7 @@ from pathlib import Path
 import numpy as np
 
 from calibration import generated
+from calibration.command import Parser
 from rockwear.kernels.checks import ParameterError, finite, not_negative, require
 from rockwear.report import published
 from rockwear.report.folder import RunFolder
@@ -163,7 +164,8 @@ def entered(ours, given):
 
 def main(words):
     """Write the page, or enter a result. -> exit code."""
-    parser = argparse.ArgumentParser(prog="python3 -m calibration.fidelity", description=__doc__.splitlines()[0])
+    parser = Parser(prog="python3 -m calibration.fidelity", description=__doc__,
+                    formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", type=Path, default=OURS.with_suffix(".md"))
     for name in ("enter", "result", "command", "commit", "set"):
         parser.add_argument(f"--{name}", default="")

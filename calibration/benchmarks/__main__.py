@@ -11,13 +11,12 @@ error is measured on rock that cannot break, beside the scatter of the breaking 
 """
 import json
 import sys
-from pathlib import Path
 from statistics import mean, stdev
 
 import matplotlib
 import numpy as np
 
-from calibration import generated
+from calibration import command, generated
 from calibration.benchmarks import cut_cost
 from calibration.benchmarks import heat as heat_study
 from calibration.benchmarks import loading_speed, scale, steady_cost
@@ -203,6 +202,6 @@ def main(folder):
 
 if __name__ == "__main__":
     try:
-        main(Path(sys.argv[1] if len(sys.argv) > 1 else "out/bench"))
+        main(command.folder(__spec__.name, "out/bench"))
     except RunFailed as error:
         sys.exit(f"bench: {error}")

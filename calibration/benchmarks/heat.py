@@ -5,13 +5,11 @@
 Writes heat.md (tables), figures and provenance.json into DIR. Kernels only, without YADE; takes some minutes. SECTIONS
 are sections of `make validate`. Times of a heat step are processor times, medians of five rounds.
 """
-import sys
-from pathlib import Path
 
 import matplotlib
 import numpy as np
 
-from calibration import generated
+from calibration import command, generated
 from calibration.benchmarks import heat_studies as studies
 from calibration.benchmarks.heat_figures import convergence_figure, models_figure, tip_figure
 from calibration.benchmarks.heat_studies import order
@@ -128,4 +126,4 @@ def main(folder):
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1] if len(sys.argv) > 1 else "out/heat"))
+    main(command.folder(__spec__.name, "out/heat"))

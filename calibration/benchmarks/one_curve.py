@@ -2,7 +2,7 @@
 import sys
 from pathlib import Path
 
-from calibration import generated
+from calibration import command, generated
 from calibration.campaigns.runs import RunFailed
 
 
@@ -12,10 +12,7 @@ def main(curve):
     Ends with 1 where a run failed, with 2 without a folder.
     """
     name = Path(sys.argv[0]).stem
-    if len(sys.argv) != 2:
-        print(f"usage: python3 -m calibration.benchmarks.{name} DIR", file=sys.stderr)
-        sys.exit(2)
-    place = Path(sys.argv[1])
+    place = command.folder(f"calibration.benchmarks.{name}")
     try:
         lines = curve(place)
     except RunFailed as error:

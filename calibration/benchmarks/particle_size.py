@@ -7,13 +7,11 @@ wear in a visit varies too; in a run it follows from wear_period, wear_accelerat
 mean diameters. Writes particle_size.md (tables), particle_size.png and provenance.json into DIR.
 """
 import math
-import sys
-from pathlib import Path
 
 import matplotlib
 import numpy as np
 
-from calibration import generated
+from calibration import command, generated
 from calibration.benchmarks.worn_outlines import (
     OUTLINE, PATTERN_WORN, WORN, Pattern, exact, flat, flat_of_segments, particles, patterned, patterned_segments, rub,
     unexplained)
@@ -133,4 +131,4 @@ def draw(polygon, pattern, ways, off, segments):
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1] if len(sys.argv) > 1 else "out/particle_size"))
+    main(command.folder(__spec__.name, "out/particle_size"))

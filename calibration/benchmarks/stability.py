@@ -7,12 +7,11 @@ into DIR. `rows` evaluates a run for calibration/validation too.
 """
 import sys
 import time
-from pathlib import Path
 
 import matplotlib
 import numpy as np
 
-from calibration import generated
+from calibration import command, generated
 from calibration.campaigns.runs import Runs
 from calibration.validation.verdicts import Row, Section
 from rockwear.kernels.stability import critical_time_step
@@ -172,4 +171,4 @@ def main(folder):
 
 
 if __name__ == "__main__":
-    sys.exit(main(Path(sys.argv[1] if len(sys.argv) > 1 else "out/stability")))
+    sys.exit(main(command.folder(__spec__.name, "out/stability")))

@@ -20,6 +20,7 @@ import numpy as np
 from yade import ForceEngine, GlobalStiffnessTimeStepper, InsertionSortCollider, O, utils
 
 from calibration.benchmarks.stability import ABOVE, BELOW, UNSTABLE
+from rockwear import __version__
 from rockwear.engines.softening import UNLIMITED
 from rockwear.kernels.packing import contacts, pack
 from rockwear.kernels.parameter import Parameter, flag, integer, text
@@ -286,7 +287,7 @@ def main():
         print(f"{name}: {time.process_time() - began:.1f} s", flush=True)
     folder = Path(v.out)
     folder.mkdir(parents=True, exist_ok=True)
-    summary = {"scene": "stability", "parameters": vars(v), "cases": cases}
+    summary = {"scene": "stability", "versions": {"rockwear": __version__}, "parameters": vars(v), "cases": cases}
     (folder / "summary.json").write_text(json.dumps(summary, indent=1), encoding="utf-8")
     sys.stdout.flush()
     os._exit(0)

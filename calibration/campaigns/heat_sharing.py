@@ -5,10 +5,8 @@
 Writes heat_sharing.md into DIR. The two cuts take a minute or two; finished runs are kept.
 """
 import math
-import sys
-from pathlib import Path
 
-from calibration import generated
+from calibration import command, generated
 from calibration.campaigns.runs import Runs
 from rockwear.kernels.analytic import sliding_half_spaces
 from rockwear.kernels.conduction import effusivity, effusivity_share
@@ -82,4 +80,4 @@ def main(folder):
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1] if len(sys.argv) > 1 else "out/heat_sharing"))
+    main(command.folder(__spec__.name, "out/heat_sharing"))

@@ -6,9 +6,8 @@
 An interrupted fit resumes. A rock that is good is put into the library by copying its file. Writes DIR/rocks.md.
 """
 import sys
-from pathlib import Path
 
-from calibration import generated
+from calibration import command, generated
 from calibration.fitting import rock_fit
 from rockwear.kernels.checks import ParameterError
 from rockwear.model import rock_file
@@ -75,8 +74,7 @@ def main(folder, words):
 
 
 if __name__ == "__main__":
-    unknown = [word for word in sys.argv[2:] if word not in (*ROCKS, "--read")]
-    if len(sys.argv) < 2 or unknown:
-        print(f"usage: python3 -m calibration.campaigns.library DIR [{'] ['.join(ROCKS)}] [--read]", file=sys.stderr)
-        sys.exit(2)
-    sys.exit(main(Path(sys.argv[1]), sys.argv[2:]))
+    command.help_if_asked()
+    known = *ROCKS, "--read"
+    (place,), given = command.split(sys.argv[1:], __spec__.name, f"DIR [{'] ['.join(known)}]", known=known)
+    sys.exit(main(place, given))

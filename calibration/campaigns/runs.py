@@ -13,7 +13,10 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from calibration.campaigns import yade_job
+from calibration.campaigns.progress import Progress
+from calibration.command import Parser, help_if_asked, split
 from calibration.generated import ROOT
+from rockwear import __version__
 from rockwear.kernels.checks import ParameterError, require
 from rockwear.model import rock_file
 from rockwear.report.folder import RunFolder
@@ -62,8 +65,13 @@ def job(script, folder, words=(), threads=1, environment=None):
 class Started:
     """A run that has been queued or was there already."""
 
-    def __init__(self, folder, future=None):
-        self.folder, self.future = Path(folder), future
+    def __init__(self, folder, future=None, log=None):
+        self.folder, self.future, self.log = Path(folder), future, log
+
+    @property
+    def over(self):
+        """Whether the run has ended."""
+        return self.future is None or self.future.done()
 
     def exception(self):
         """RunFailed, or None; waits for the run."""
@@ -90,7 +98,7 @@ class Runs:
     """Runs in subfolders of `folder`, `at_once` at a time on this machine, or as many as the workers of `scheduler` (an
     address) take.
 
-    With `keep`, runs that finished with the same values and the same input files are not repeated. Use it as a context:
+    With `keep`, runs that `finished` are not repeated, and others resume from their checkpoints. Use it as a context:
     an exception within it stops the runs under way, which resume when they are started again.
     """
 
@@ -133,16 +141,7 @@ class Runs:
         import cloudpickle
         cloudpickle.register_pickle_by_value(yade_job)
         self.futures.append(self.client.submit(yade_job.run_on_worker, one, pure=False))
-        return Started(one["folder"], self.futures[-1])
-
-    def wait_for_next(self, started, timeout):
-        """Wait until one of these Started has ended, at most so many seconds."""
-        import distributed
-        try:
-            distributed.wait([one.future for one in started], timeout=timeout, return_when="FIRST_COMPLETED")
-        except GONE:
-            # TimeoutError is an OSError; one whose scheduler was lost says so itself.
-            pass
+        return Started(one["folder"], self.futures[-1], one["log"])
 
     def _connect(self):
         if self.scheduler:
@@ -194,7 +193,7 @@ def placement(words):
 
     Ends the program with exit code 2 where they cannot be used.
     """
-    parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False, argument_default=argparse.SUPPRESS)
+    parser = Parser(add_help=False, allow_abbrev=False, argument_default=argparse.SUPPRESS)
     add_placement(parser)
     found, others = parser.parse_known_args(words)
     try:
@@ -211,15 +210,15 @@ def placement(words):
 def command_line(campaign, cases=(), flags=("--read",)):
     """(folder, the other words, {option of Runs: value}) of the command line DIR [CASE ...] [FLAG ...] [where to run].
 
-    campaign: a module's name; cases, flags: words that may follow the folder. Ends the program with exit code 2 and one
-    line where it cannot be used.
+    campaign: a module's name; cases, flags: words that may come with the folder. Ends the program: after the usage
+    where --help asks for it, with exit code 2 and one line where the words cannot be used.
     """
+    help_if_asked()
     where, words = placement(sys.argv[1:])
-    if not words or set(words[1:]) - {*cases, *flags}:
-        usage = ["usage: python3 -m", campaign, "DIR", *(f"[{word}]" for word in (*cases, *flags)), PLACEMENT]
-        print(*usage, file=sys.stderr)
-        sys.exit(2)
-    return Path(words[0]), words[1:], where
+    known = *cases, *flags
+    (folder,), words = split(words, campaign, " ".join(["DIR", *(f"[{word}]" for word in known), PLACEMENT]),
+                             known=known)
+    return folder, words, where
 
 
 def add_placement(parser):
@@ -237,13 +236,42 @@ def _count(word):
     return int(word)
 
 
+def as_they_end(started):
+    """Each of these Started once it has ended; a line says how all of them stand, and the time left, in between."""
+    left = list(dict.fromkeys(started))
+    progress = Progress(left) if any(not one.over for one in left) else None
+    while left:
+        ended, left = [one for one in left if one.over], [one for one in left if not one.over]
+        for one in ended:
+            if progress:
+                progress.failed += one.exception() is not None
+                progress.clear()
+            yield one
+        if progress:
+            progress.show()
+        if left:
+            _wait_for_next(left, progress.period)
+    if progress:
+        progress.close()
+
+
+def _wait_for_next(started, timeout):
+    """Wait until one of these Started has ended, at most so many seconds."""
+    import distributed
+    try:
+        distributed.wait([one.future for one in started], timeout=timeout, return_when="FIRST_COMPLETED")
+    except GONE:
+        # TimeoutError is an OSError; one whose scheduler was lost says so itself.
+        pass
+
+
 def wait_for(jobs, words):
     """Wait for runs {key: Started}; print words(key, folder) of each, or why it failed. -> 1 where one failed, else
     0."""
-    failed = 0
-    for key, one in jobs.items():
+    failed, key_of = 0, {one: key for key, one in jobs.items()}
+    for one in as_they_end(jobs.values()):
         try:
-            print(words(key, one.result()), flush=True)
+            print(words(key_of[one], one.result()), flush=True)
         except RunFailed as error:
             print(error, file=sys.stderr, flush=True)
             failed = 1
@@ -251,14 +279,15 @@ def wait_for(jobs, words):
 
 
 def finished(folder, values):
-    """True for a folder with the summary of a run that finished, with these values and the same input files."""
+    """True for a folder with the summary of a run that finished, with these values, the same input files and this
+    version of rockwear: another one may find other results, and one table is not to mix them."""
     try:
         summary = RunFolder(folder).summary
-        parameters = summary["parameters"]
+        parameters, version = summary["parameters"], summary["versions"]["rockwear"]
         same_files = all(digest(_path(name, parameters[name])) == found for name, found in summary["files"].items())
     except (OSError, ValueError, KeyError):
         return False
-    return summary["exit_code"] == 0 and same_files and all(
+    return summary["exit_code"] == 0 and version == __version__ and same_files and all(
         name in parameters and _same(parameters[name], value) for name, value in values.items())
 
 

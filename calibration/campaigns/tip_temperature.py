@@ -10,12 +10,11 @@ a JSON file for each scene and provenance.json into DIR.
 SCENES lists for each scene its script, its values, and the temperatures (K) among its results.
 """
 import json
-import sys
 
 import numpy as np
 
 from calibration import generated
-from calibration.campaigns.runs import Runs, command_line
+from calibration.campaigns.runs import Runs, as_they_end, command_line
 from rockwear.report import plots
 
 RIPPER = dict(velocities=0.4, wear_passes=0, report="false", snapshot_period=1, grading_factor=3)
@@ -60,7 +59,8 @@ def measure(folder, scene, quick=False, **where):
         jobs = {(what, choice): runs.start(f"{what}-{choice}".translate(str.maketrans(" /,²()", "______")), script,
                                            **{**values, **change}) if change else default
                 for what, choices in OPEN.items() for choice, change in choices.items()}
-        found = {key: job.result() for key, job in jobs.items()}
+        ended = {one: one.result() for one in as_they_end(jobs.values())}
+        found = {key: ended[job] for key, job in jobs.items()}
 
     def rise(run, result):
         return run.result(result) - run.parameter("tool_temperature", 0.0)

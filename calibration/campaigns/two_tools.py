@@ -7,12 +7,11 @@ the figure and writes a table of the same name (.md) beside it. calibration/resu
 """
 import math
 import sys
-from pathlib import Path
 
 import matplotlib
 import numpy as np
 
-from calibration import generated
+from calibration import command, generated
 from rockwear.kernels.checks import ParameterError, require
 from rockwear.kernels.polygon import contour, nearest_arc
 from rockwear.kernels.wear_statistics import PLACE
@@ -106,7 +105,7 @@ def read(folder):
 
 def main(path, folders):
     """Draw the figure at `path`, and write and print a table with a row for each group."""
-    path, groups = Path(path), grouped(map(read, folders))
+    groups = grouped(map(read, folders))
     rows = []
     for (tool, factor), runs in groups.items():
         share, its_error = scatter([100 * share_of_friction(run) for run in runs])
@@ -118,15 +117,15 @@ def main(path, folders):
     generated.record(path)
     print(generated.write_page(path.with_suffix(".md"), generated.table(
         ["tool", "wear acceleration", "friction on the tool, % of its work", "worn volume over wear acceleration, µm²",
-         "seeds"], rows)))
+         "seeds"], rows), folders))
 
 
 if __name__ == "__main__":
     matplotlib.use("Agg")
-    if len(sys.argv) < 3:
-        sys.exit(__doc__)
+    command.help_if_asked()
+    (file, *runs), _ = command.split(sys.argv[1:], __spec__.name, "FIGURE.png FOLDER [FOLDER ...]", least=2, most=None)
     try:
-        main(sys.argv[1], sys.argv[2:])
+        main(file, runs)
     except (OSError, ParameterError) as error:
         print(f"error: {error}", file=sys.stderr)
         sys.exit(2)

@@ -12,7 +12,7 @@ import matplotlib
 import numpy as np
 
 from calibration import generated
-from calibration.campaigns.runs import RunFailed, Runs, command_line
+from calibration.campaigns.runs import RunFailed, Runs, as_they_end, command_line
 from rockwear.kernels.wear_statistics import difference, middles
 from rockwear.report import page, plots, published
 from rockwear.report.folder import read_history
@@ -153,7 +153,8 @@ def main(folder, *names, **where):
     with Runs(folder, keep=True, **where) as runs:
         waiting = {name: runs.start(name.replace(", ", "-").replace(" ", "_"), script, **{**COARSE, **values})
                    for name, (script, values) in cases.items()}
-        failed = {name: str(future.exception()) for name, future in waiting.items() if future.exception()}
+        name_of = {future: name for name, future in waiting.items()}
+        failed = {name_of[one]: str(one.exception()) for one in as_they_end(name_of) if one.exception()}
         found = {name: future.result() for name, future in waiting.items() if name not in failed}
     for words in failed.values():
         print(f"wear campaign: {words}", file=sys.stderr)

@@ -5,8 +5,9 @@
 
 A row is a run of SCRIPT in DIR/ROW, named by the table's description, with the values of the row as its parameters; its
 words go to DIR/ROW.log. All rows are checked before the first one runs. The same command again keeps the rows that have
-finished and resumes the others from their checkpoints. Writes sweep.html and sweep.csv into DIR. Exit code 0: all rows
-are done; 1: some failed, each said in one line; 2: bad input, said in one line; 128 + n: stopped by signal n.
+finished with this version of rockwear and resumes the others from their checkpoints. Writes sweep.html and sweep.csv
+into DIR. Exit code 0: all rows are done; 1: some failed, each said in one line; 2: bad input, said in one line; 128 +
+n: stopped by signal n.
 
 On a cluster, start `dask scheduler` on one machine and `dask worker ADDRESS --nthreads N` on each, N rows at a time;
 all see the same folders. A worker lost in mid-row costs one checkpoint interval, and the row goes on elsewhere; the
@@ -23,9 +24,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from calibration.campaigns import runs, yade_job
+from calibration.command import Parser
 from calibration.generated import ROOT
 from calibration.sweep import page, slurm
-from calibration.sweep.progress import Progress
 from rockwear.kernels.checks import ParameterError, require
 from rockwear.report.folder import RunFolder
 
@@ -95,23 +96,12 @@ def _common_out(rows):
 
 def run_all(rows, folder, **where):
     """Run the rows that are not done; a row that fails has its `failure` set."""
-    missing = [row for row in rows if not row.done]
-    progress = Progress(rows)
-    if not missing:
-        return
     with runs.Runs(folder, keep=True, **where) as started:
-        waiting = {row.name: started.submit(row.job) for row in missing}
-        left = {row.name: row for row in missing}
-        while left:
-            for name in [name for name in left if waiting[name].future.done()]:
-                row = left.pop(name)
-                row.failure = str(waiting[name].exception() or "")
-                if row.failure:
-                    progress.say(f"failed: {row.failure}", sys.stderr)
-            progress.show(left)
-            if left:
-                started.wait_for_next([waiting[name] for name in left], progress.period)
-    progress.close()
+        row_of = {runs.Started(row.folder) if row.done else started.submit(row.job): row for row in rows}
+        for one in runs.as_they_end(row_of):
+            row_of[one].failure = str(one.exception() or "")
+            if row_of[one].failure:
+                print(f"failed: {row_of[one].failure}", file=sys.stderr, flush=True)
 
 
 def run_one(row):
@@ -127,8 +117,8 @@ def run_one(row):
 
 def main(words):
     """-> exit code."""
-    parser = argparse.ArgumentParser(prog="python3 -m calibration.sweep", description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = Parser(prog="python3 -m calibration.sweep", description=__doc__,
+                    formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("table", metavar="TABLE", help="a table of yade-batch")
     parser.add_argument("script", metavar="SCRIPT", help="a YADE script of a scene, yade_scripts/steady_cut.py for one")
     parser.add_argument("--out", metavar="DIR", help="folder of the results (default: the table's column out, else "

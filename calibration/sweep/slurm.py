@@ -9,29 +9,34 @@ from calibration.generated import ROOT
 ARRAY = """\
 #!/bin/bash
 # sbatch {file}
-# A row a job. A job that is stopped at its time limit writes a checkpoint and is queued again; so does `sbatch` of this
-# file once more with the rows that are missing. The page, when all have ended: the command below without --row.
+# A row a job. Two minutes before its time limit (and before preemption, where PreemptParameters=send_user_signal) it
+# gets SIGUSR1, writes a checkpoint and is queued again. At SIGTERM (scancel) it writes one and is not: `sbatch` of
+# this file once more runs the rows that are missing. The page, when all have ended: the command below without --row.
 #SBATCH --job-name=rockwear
 #SBATCH --array=1-{count}
 #SBATCH --ntasks=1
 #SBATCH --cpus-per-task={threads}
 #SBATCH --requeue
-#SBATCH --signal=B:TERM@120
-#SBATCH --output={folder}/slurm-%a.log
+#SBATCH --signal=B:USR1@120
+#SBATCH --output="{folder}/slurm-%a.log"
 #SBATCH --open-mode=append
 cd {directory} || exit 2
 export PYTHONPATH={root}
 {command} --row "$SLURM_ARRAY_TASK_ID" &
 row=$!
+limit=
+trap 'limit=yes; kill -TERM $row' USR1
 trap 'kill -TERM $row' TERM
-wait $row
-code=$?
-if [ $code -gt 128 ]; then
-    wait $row
-    [ -z "$SLURM_JOB_ID" ] || scontrol requeue "${{SLURM_ARRAY_JOB_ID}}_$SLURM_ARRAY_TASK_ID"
-fi
+# A signal ends `wait`, while the row is still writing its checkpoint.
+while wait $row; code=$?; kill -0 $row 2>/dev/null; do :; done
+[ -z "$limit" ] || scontrol requeue "${{SLURM_ARRAY_JOB_ID}}_$SLURM_ARRAY_TASK_ID"
 exit $code
 """
+
+
+def _quoted(path):
+    """A path as sbatch reads it between double quotes: % begins a pattern there."""
+    return str(path).replace("\\", "\\\\").replace('"', '\\"').replace("%", "%%")
 
 
 def write(file, rows, table, script, folder):
@@ -41,6 +46,6 @@ def write(file, rows, table, script, folder):
     threads = max(row.threads for row in rows)
     file.write_text(ARRAY.format(
         file=shlex.quote(str(file)), count=len(rows), threads=threads, root=shlex.quote(str(ROOT)),
-        directory=shlex.quote(os.getcwd()), folder=folder.resolve(), command=command), encoding="utf-8")
+        directory=shlex.quote(os.getcwd()), folder=_quoted(folder.resolve()), command=command), encoding="utf-8")
     print(f"{file}: {len(rows)} rows")
     return 0

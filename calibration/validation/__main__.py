@@ -9,11 +9,10 @@ too.
 import json
 import sys
 from dataclasses import asdict
-from pathlib import Path
 
 import matplotlib
 
-from calibration import generated
+from calibration import command, generated
 from calibration.benchmarks import heat, stability
 from calibration.campaigns.runs import RunFailed, Runs
 from calibration.validation import uniaxial as uniaxial_validation, wear as wear_validation
@@ -105,4 +104,4 @@ def main(folder):
 
 
 if __name__ == "__main__":
-    sys.exit(main(Path(sys.argv[1] if len(sys.argv) > 1 else "out/validate")))
+    sys.exit(main(command.folder(__spec__.name, "out/validate")))

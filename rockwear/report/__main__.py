@@ -1,10 +1,19 @@
-"""python3 -m rockwear.report FOLDER"""
+"""Draw the report of a run again.
+
+    python3 -m rockwear.report FOLDER
+
+FOLDER is that of a run that has ended. Writes report.html and figures/ into it.
+"""
 import sys
 
 from rockwear.report import write
 
-if len(sys.argv) != 2:
-    sys.exit("usage: python3 -m rockwear.report FOLDER")
+if "--help" in sys.argv:
+    print(__doc__.strip())
+    sys.exit(0)
+if len(sys.argv) != 2 or sys.argv[1].startswith("-"):
+    print("usage: python3 -m rockwear.report FOLDER", file=sys.stderr)
+    sys.exit(2)
 try:
     print(write(sys.argv[1]))
 except FileNotFoundError as error:

@@ -32,7 +32,8 @@ COMMON = Group("output", (
 ))
 FOLDERS = "snapshots", "checkpoint", "figures", "vtk"
 """Folders that a new run empties."""
-FILES = "summary.json", "history.csv", "cracks.csv", "turns.csv", "wear_profile.csv", "tool.stl", "report.html"
+FILES = ("summary.json", "history.csv", "cracks.csv", "groove.csv", "chips.csv", "turns.csv", "wear_profile.csv",
+         "tool_fields.csv", "warming.csv", "errors.csv", "tool.stl", "report.html")
 """Files that a new run removes."""
 HISTORY = "history.f8"
 """In the folder checkpoint: the rows of history.csv, 8 bytes a number; a checkpoint says how many of them count."""
@@ -141,7 +142,7 @@ class Run:
         self.name, self.scene, self.values, self.folder, self.began = name, scene, values, folder, began
         self.identity = identity
         self.stopped_by = None
-        self.snapshots = 0
+        self.snapshots, self.memory = 0, []
         self.next_snapshot = 0.0
         self.wall_before = 0.0
         self.setup_time = self.loop_time = self.checkpoint_time = 0.0
@@ -187,7 +188,10 @@ class Run:
             signal.signal(number, self._on_signal)
         ended, code = "finished", 0
         try:
-            if not self.values["resume"]:
+            if self.values["resume"]:
+                # What was written may be later than the checkpoint.
+                self._write_tables(self.scene.output.growing_tables())
+            else:
                 self._checkpoint()
             self._loop()
         except RunEnded as end:
@@ -272,6 +276,7 @@ class Run:
             np.savez_compressed(file, **self.scene.output.snapshot())
         if self.values["vtk"]:
             self.scene.output.write_vtk(self.folder / "vtk", self.snapshots)
+        self.memory.append((self.scene.time, resident_memory()))
         self.snapshots += 1
         period = self.values["snapshot_period"]
         self.next_snapshot = period * (math.floor(self.scene.time / period + 1e-9) + 1)
@@ -280,15 +285,19 @@ class Run:
         begin = time.time()
         state = {"scene": self.scene.state(), "snapshots": self.snapshots, "next_snapshot": self.next_snapshot,
                  "wall_time": self.wall_before + time.time() - self.began}
+        self._write_tables(self.scene.output.growing_tables())
         with naming(self.folder / "checkpoint"):
             checkpoint.save(self.folder / "checkpoint", identity=self.identity, state=state,
                             write_scenes=lambda directory: self.scene.save(directory, self.folder))
         self.checkpoint_time += time.time() - begin
 
+    def _write_tables(self, tables):
+        for name, (header, rows) in tables.items():
+            write_table(self.folder / name, header, rows)
+
     def _write_summary(self, ended, code, warnings):
         scene = self.scene
-        for name, (header, rows) in scene.output.tables().items():
-            write_table(self.folder / name, header, rows)
+        self._write_tables(scene.output.tables())
         ours = {engine.name: {"seconds": engine.wall_time, "visits": engine.visits} for engine in scene.engines}
         python = sum(engine.wall_time for engine in scene.engines)
         summary = {
@@ -303,10 +312,18 @@ class Run:
             "wall_time": {"unit": "s", "total": self.wall_before + time.time() - self.began, "set_up": self.setup_time,
                           "loop": self.loop_time, "python_engines": python, "yade": self.loop_time - python,
                           "checkpoints": self.checkpoint_time, "by_engine": ours},
+            # Of this process: a resumed run begins anew.
+            "memory": {"unit": "bytes", "time": [time for time, _ in self.memory],
+                       "resident": [memory for _, memory in self.memory]},
             "peak_memory": {"value": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024, "unit": "bytes"},
         }
         with replacing(self.folder / "summary.json") as file:
             file.write(json.dumps(summary, indent=1, allow_nan=True).encode())
+
+
+def resident_memory():
+    """Bytes of memory that this process has now."""
+    return int(Path("/proc/self/statm").read_text(encoding="ascii").split()[1]) * resource.getpagesize()
 
 
 def _plain(value):

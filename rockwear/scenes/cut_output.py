@@ -143,9 +143,15 @@ class CutOutput(Output):
         return self.scene.programme.cracks() + self.scene.bonds.cracks
 
     def tables(self):
+        return self._tables(ended=True)
+
+    def growing_tables(self):
+        return self._tables(ended=False)
+
+    def _tables(self, ended):
         scene = self.scene
         profile = scene.tool.profile
-        found = {**crack_table(self._cracks()), **scene.programme.tables()}
+        found = {**crack_table(self._cracks()), **scene.programme.tables(ended)}
         if profile:
             header = [f"place_{n} [{scene.units.volume}]" for n in range(profile.places)]
             found["wear_profile.csv"] = header, profile.increments

@@ -49,6 +49,10 @@ class Output(ABC):
         """{file: (header, rows)} of further tables."""
         return {}
 
+    def growing_tables(self):
+        """Those of `tables` that are written at every checkpoint too: all, unless some are costly to evaluate."""
+        return self.tables()
+
 
 def crack_table(cracks):
     """{file: (header, rows)} of broken bonds (engines.bonds.Crack), in order of time."""

@@ -200,7 +200,9 @@ class Passes(Cycles):
             found[f"mass_lost_from_{shank}_shank"] = (float(lost), "-")
         return found
 
-    def tables(self):
+    def tables(self, ended):
+        if not ended:
+            return {}
         tool, done = self.scene.tool.model, [u for u in self.velocities if f"{u:g}" in self.passes]
         fields = {f"pass_{u:g}": self.passes[f"{u:g}"][3] for u in done}
         fields.update({f"{shank}_{u:g}": self.field(u, shank) for u in done for shank in SHANKS})

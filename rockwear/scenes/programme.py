@@ -130,8 +130,8 @@ class Programme(ABC):
     def results(self, columns):
         """{name: (value, unit)}: times and forces, from the history's columns."""
 
-    def tables(self):
-        """{file: (header, rows)} of further tables."""
+    def tables(self, ended):
+        """{file: (header, rows)} of further tables, costly ones once the run has `ended`."""
         return {}
 
 

@@ -209,7 +209,7 @@ class SteadyCut(Programme):
                          "cut_length tells it")
         return found
 
-    def tables(self):
+    def tables(self, ended):
         groove, chips = self._record()
         x, y = self.origin
         cracks = [crack._replace(x=crack.x - x, y=crack.y - y) for crack in self.scene.bonds.cracks]

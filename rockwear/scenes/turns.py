@@ -151,9 +151,9 @@ class Turns(Programme):
     def warnings(self):
         return self.window.warnings(self.cracks() + self.scene.bonds.cracks) if self.window else []
 
-    def tables(self):
+    def tables(self, ended):
         """Where the pick's temperature would go in further turns."""
-        if not (self.scene.heat and self.scene.finished):
+        if not (ended and self.scene.heat and self.scene.finished):
             return {}
         header = ["turn [-]", "peak [K]", "cooled [K]", "mean [K]", "absorbed [J/m]", "released [J/m]"]
         return {"turns.csv": (header, self.repeated_turns(REPEATED))}

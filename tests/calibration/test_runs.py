@@ -1,20 +1,26 @@
 """Runs that campaigns, benchmarks and validations start: kept, repeated or failed; their parameters are accepted."""
+import itertools
 import json
 import os
+import re
 import subprocess
 import sys
+from concurrent.futures import Future
+from types import SimpleNamespace
 
 import pytest
 
+from calibration import generated
 from calibration.benchmarks import __main__ as bench
 from calibration.benchmarks import loading_speed, particle_size
-from calibration.campaigns import granular, sharp_and_worn, steady_cut, tip_temperature, uniaxial, wear
-from calibration.campaigns.runs import RunFailed, Runs, finished
+from calibration.campaigns import granular, progress, sharp_and_worn, steady_cut, tip_temperature, uniaxial, wear
+from calibration.campaigns.runs import RunFailed, Runs, Started, finished, wait_for
 from calibration.fitting import rock_fit
 from calibration.fitting.rock_unknowns import Micro
 from calibration.fitting.rock_targets import Targets
 from calibration.fitting.rock_tests import Laboratory
 from calibration.validation import __main__ as validation
+from rockwear import __version__
 from rockwear.run.checkpoint import digest
 
 from tests.running import ROOT, run_script
@@ -117,10 +123,17 @@ def test_every_run_that_is_started_has_parameters_that_its_scene_takes(tmp_path)
     assert len(cases) > 150 and json.loads(checks.read_text(encoding="utf-8")) == []
 
 
+def store(folder, values, files=(), version=__version__):
+    """The summary of a run that finished."""
+    folder.mkdir(exist_ok=True)
+    (folder / "summary.json").write_text(json.dumps({
+        "exit_code": 0, "versions": {"rockwear": version}, "files": dict(files), "parameters": values}),
+        encoding="utf-8")
+
+
 def test_a_finished_run_is_kept_only_for_the_same_values(tmp_path):
     assert not finished(tmp_path, {})
-    stored = {"exit_code": 0, "files": {}, "parameters": {"kn": 2e10, "heat": False, "test": "tension"}}
-    (tmp_path / "summary.json").write_text(json.dumps(stored), encoding="utf-8")
+    store(tmp_path, {"kn": 2e10, "heat": False, "test": "tension"})
     assert finished(tmp_path, {"kn": "2e10", "heat": "false", "test": "tension"})
     assert not finished(tmp_path, {"kn": 1e10}) and not finished(tmp_path, {"kt": 1e10})
 
@@ -130,11 +143,61 @@ def test_a_finished_run_is_kept_only_for_the_same_files(tmp_path):
     outline.write_text("0,0", encoding="utf-8")
     given = {"rock": "m_sandstone", "outline": str(outline)}
     files = {"rock": digest(ROOT / "rockwear/rocks/m_sandstone.json"), "outline": digest(outline)}
-    (tmp_path / "summary.json").write_text(json.dumps({"exit_code": 0, "files": files, "parameters": given}),
-                                           encoding="utf-8")
+    store(tmp_path, given, files)
     assert finished(tmp_path, given)
     outline.write_text("0,1", encoding="utf-8")
     assert not finished(tmp_path, given)
+
+
+def test_a_finished_run_of_another_version_is_repeated(tmp_path):
+    store(tmp_path, {"kn": 2e10})
+    assert finished(tmp_path, {"kn": 2e10})
+    store(tmp_path, {"kn": 2e10}, version="0.1.0")
+    assert not finished(tmp_path, {"kn": 2e10})
+    (tmp_path / "summary.json").write_text('{"exit_code": 0, "files": {}, "parameters": {}}', encoding="utf-8")
+    assert not finished(tmp_path, {})
+
+
+def test_tables_name_the_versions_of_their_runs_where_one_is_another(tmp_path):
+    for name, version in (("a", "0.1.0"), ("b", __version__), ("c", __version__)):
+        store(tmp_path / name, {}, version=version)
+    page = tmp_path / "page.md"
+    text = generated.write_page(page, ["words"])
+    assert text == page.read_text(encoding="utf-8") and text.endswith(
+        f"\n\n**Runs, by version of rockwear: 1 by 0.1.0, 2 by {__version__}; this is {__version__}.**\n\nwords\n")
+    assert "Runs, by" not in generated.write_page(page, ["words"], [tmp_path / "b", tmp_path / "c"])
+    assert "1 by 0.1.0;" in generated.write_page(page, ["words"], [tmp_path / "a"])
+
+
+def test_campaigns_say_how_their_runs_stand_and_what_ends_first_first(tmp_path, monkeypatch, capsys):
+    runs = {name: Started(tmp_path / name, Future(), tmp_path / f"{name}.log") for name in ("slow", "bad", "fast")}
+    runs["kept"] = Started(tmp_path / "kept")
+    for folder in ("slow", "fast", "kept"):
+        store(tmp_path / folder, {})
+    for name, part in (("slow", "50.0"), ("bad", "10.0")):
+        runs[name].log.write_text(f"cut  1.0 %  t = 0\ncut  {part} %  t = 1 ms  1 min left\n", encoding="utf-8")
+    endings = iter([("fast", (0, "")), ("bad", (1, "error: k")), ("slow", (0, ""))])
+
+    def end_next(left, timeout):
+        name, ending = next(endings)
+        runs[name].future.set_result(ending)
+
+    monkeypatch.setattr("calibration.campaigns.runs._wait_for_next", end_next)
+    monkeypatch.setattr(progress, "time", SimpleNamespace(time=itertools.count(0, 100).__next__))
+    assert wait_for(runs, lambda key, run: key) == 1
+    said, failed = capsys.readouterr()
+    assert failed == "bad ended with 1: error: k\n"
+    lines = said.splitlines()
+    assert lines[1].endswith(", time left not known yet") and re.search(r", \d+ min \d+ s left$", lines[3])
+    assert [line.split(" %")[0] for line in lines] == [
+        "kept", "1 of 4 runs done, 0 failed, 40.0", "fast", "2 of 4 runs done, 0 failed, 65.0",
+        "2 of 4 runs done, 1 failed, 87.5", "slow", "3 of 4 runs done, 1 failed, 100.0"]
+
+
+def test_a_campaign_whose_runs_are_all_kept_says_nothing_of_time(tmp_path, capsys):
+    store(tmp_path / "kept", {})
+    assert wait_for({"kept": Started(tmp_path / "kept")}, lambda key, run: key) == 0
+    assert capsys.readouterr().out == "kept\n"
 
 
 def test_a_run_that_fails_says_so(tmp_path):

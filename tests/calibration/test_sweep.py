@@ -3,12 +3,16 @@ import csv
 import json
 import os
 import re
+import shlex
+import shutil
 import signal
 import subprocess
+import sys
 import threading
 import time
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from unittest import mock
 
 import numpy as np
@@ -17,6 +21,7 @@ import pytest
 from calibration.campaigns import runs, yade_job
 from calibration.sweep import __main__ as sweep
 from calibration.sweep import page, slurm
+from rockwear import __version__
 from tests.running import ROOT
 
 SCRIPT = str(ROOT / "yade_scripts/uniaxial.py")
@@ -63,6 +68,7 @@ def kill_worker(folder, found):
     with np.load(folder / f"checkpoint/{found['set']}/state.npz") as state:
         found["saved rows"] = int(state["scene/engines/recorder/rows"])
     found["history"] = (folder / "history.csv").read_bytes()
+    found["cracks"] = (folder / "cracks.csv").read_bytes()
 
 
 @pytest.fixture(scope="module")
@@ -97,6 +103,7 @@ def test_a_row_whose_worker_is_killed_goes_on_elsewhere_and_differs_in_no_bit(sw
 def test_a_killed_run_has_its_rows_so_far_on_the_disk(swept):
     out, _, notes, _ = swept
     assert (out / "never/history.csv").read_bytes().startswith(notes["history"])
+    assert (out / "never/cracks.csv").read_bytes().startswith(notes["cracks"]) and notes["cracks"].endswith(b"\n")
     # Of the chunk that was under way, too.
     assert notes["history"].endswith(b"\n") and notes["history"].count(b"\n") > 1 + notes["saved rows"] > 100
 
@@ -117,6 +124,46 @@ def test_finished_rows_are_kept(swept, monkeypatch):
     monkeypatch.setattr(runs.Runs, "_connect", None)
     sweep.run_all(rows[:2], out)
     assert not replace(rows[0], values={**rows[0].values, "kn": 1.0}).done
+
+
+@pytest.fixture
+def cluster(tmp_path):
+    """(address of a dask scheduler, file with a line for each run of YADE) of a worker that knows nothing of ours."""
+    programs, file, ran = tmp_path / "programs", tmp_path / "scheduler.json", tmp_path / "ran"
+    programs.mkdir()
+    yade = programs / "yade"
+    yade.write_text(f'#!/bin/sh\necho run >> "{ran}"\nexec {shutil.which("yade")} "$@"\n', encoding="utf-8")
+    yade.chmod(0o755)
+    environment = {**os.environ, "PATH": f"{programs}:{os.environ['PATH']}"}
+    environment.pop("PYTHONPATH", None)
+    options = dict(cwd=programs, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    own = ["--host", "127.0.0.1", "--no-dashboard"]
+    started = [subprocess.Popen(["dask-scheduler", *own, "--port", "0", "--scheduler-file", str(file)], **options),
+               subprocess.Popen(["dask-worker", *own, "--no-nanny", "--nthreads", "2", "--scheduler-file", str(file),
+                                 "--local-directory", str(programs)], **options)]
+    deadline = time.time() + 120
+    while not file.exists() and time.time() < deadline:
+        time.sleep(0.1)
+    yield json.loads(file.read_text(encoding="utf-8"))["address"], ran
+    for process in reversed(started):
+        process.terminate()
+        process.wait(60)
+
+
+@pytest.mark.skipif(not (shutil.which("dask-scheduler") and shutil.which("dask-worker")), reason="no commands of dask")
+def test_a_sweep_runs_on_the_worker_of_a_scheduler(cluster, tmp_path):
+    address, ran = cluster
+    assert address.startswith("tcp://127.0.0.1:")
+    words = table(tmp_path / "rows.table", "description seed " + " ".join(ROW),
+                  *(f"row{seed} {seed} " + " ".join(map(str, ROW.values())) for seed in (1, 2)))
+    done = subprocess.run(
+        [sys.executable, "-m", "calibration.sweep", words, SCRIPT, "--out", str(tmp_path / "out"), "--scheduler",
+         address], cwd=tmp_path, env={**os.environ, "PYTHONPATH": str(ROOT)}, capture_output=True, encoding="utf-8")
+    assert done.returncode == 0 and "2 of 2 rows are done, 0 failed" in done.stdout, done.stdout + done.stderr
+    assert "2 of 2 runs done, 0 failed, 100.0 %" in done.stdout
+    for seed in (1, 2):
+        assert json.loads((tmp_path / f"out/row{seed}/summary.json").read_text(encoding="utf-8"))["seed"] == seed
+    assert len(ran.read_text(encoding="utf-8").splitlines()) == 2
 
 
 @pytest.mark.parametrize("header, row, line", [
@@ -182,6 +229,35 @@ def test_a_job_array_runs_a_row(swept):
     assert done.returncode == 1 and "failed: impossible ended with 2: error: radius_max" in done.stderr
 
 
+@pytest.mark.parametrize("number, requeued", [(signal.SIGUSR1, ["7_2 checkpoint"]), (signal.SIGTERM, []), (None, [])])
+def test_a_job_is_queued_again_at_its_time_limit_alone(tmp_path, monkeypatch, number, requeued):
+    """A row that waits for SIGTERM, writes its checkpoint and ends as a row does, or that fails with a code as high."""
+    folder = tmp_path / "a folder, 50 %"
+    folder.mkdir()
+    row, file = folder / "row", folder / "array.sh"
+    row.write_text("#!/bin/bash\ntrap 'sleep 0.5; touch checkpoint; exit 143' TERM\ntouch begun\n" + (
+        "exit 143" if number is None else "while :; do sleep 0.05; done") + "\n", encoding="utf-8")
+    (folder / "scontrol").write_text('#!/bin/bash\necho "$2" checkpoin* > requeued\n', encoding="utf-8")
+    for program in (row, folder / "scontrol"):
+        program.chmod(0o755)
+    monkeypatch.chdir(folder)
+    monkeypatch.setattr(slurm.sys, "executable", str(row))
+    assert slurm.write(file, [SimpleNamespace(threads=2)], "rows.table", SCRIPT, folder) == 0
+    options = [shlex.split(line.removeprefix("#SBATCH ")) for line in file.read_text(encoding="utf-8").splitlines()
+               if line.startswith("#SBATCH ")]
+    assert [f"--output={folder}/slurm-%a.log".replace(" %/", " %%/")] in options and ["--signal=B:USR1@120"] in options
+    process = subprocess.Popen(["bash", str(file)], env={
+        **os.environ, "PATH": f"{folder}:{os.environ['PATH']}", "SLURM_JOB_ID": "9", "SLURM_ARRAY_JOB_ID": "7",
+        "SLURM_ARRAY_TASK_ID": "2"})
+    deadline = time.time() + 60
+    while not (folder / "begun").exists() and time.time() < deadline:
+        time.sleep(0.02)
+    if number:
+        process.send_signal(number)
+    assert process.wait(60) == 143 and (folder / "checkpoint").exists() == bool(number)
+    assert [file.read_text(encoding="utf-8").strip() for file in folder.glob("requeued")] == requeued
+
+
 def test_the_page_draws_each_swept_parameter_and_links_the_reports(tmp_path):
     rows = []
     for number, (depth, kind) in enumerate([(1e-3, "sharp"), (2e-3, "sharp"), (1e-3, "worn"), (2e-3, "worn")]):
@@ -190,7 +266,8 @@ def test_the_page_draws_each_swept_parameter_and_links_the_reports(tmp_path):
         (folder / "report.html").write_text("", encoding="utf-8")
         values = {"depth": depth, "kind": kind, "kn": 1e9}
         (folder / "summary.json").write_text(json.dumps({
-            "exit_code": 0, "files": {}, "parameters": values, "wall_time": {"total": 60}, "results": {
+            "exit_code": 0, "versions": {"rockwear": __version__},
+            "files": {}, "parameters": values, "wall_time": {"total": 60}, "results": {
                 "mean_cutting_force": {"value": 1e6 * depth, "unit": "N/m"}, "same": {"value": 1.0, "unit": "-"},
                 "name": {"value": "none", "unit": "-"}}}), encoding="utf-8")
         rows.append(sweep.Row(folder.name, {"depth": "", "kind": ""}, values, 1, folder, {}))

@@ -102,6 +102,14 @@ def test_from_the_command_line_without_yade(tmp_path):
     assert done.returncode == 1 and done.stderr.count("\n") == 1 and "summary.json" in done.stderr
 
 
+@pytest.mark.parametrize("word, code, said", [("--help", 0, "report of a run"), ("--no-such", 2, "usage: ")])
+def test_help_and_an_unknown_option_from_the_command_line(word, code, said):
+    done = subprocess.run([sys.executable, "-m", "rockwear.report", word], cwd=ROOT, capture_output=True,
+                          encoding="utf-8")
+    assert done.returncode == code and said in (done.stderr if code else done.stdout)
+    assert done.stderr.count("\n") == (1 if code else 0)
+
+
 @pytest.mark.parametrize("value, unit, shown", [(12e3, "N/m", "12 kN/m"), (293.15, "K", "20 °C"), (2104, "-", "2104"),
                                                 (1.5e6, "J/m3", "1.5 MJ/m³"), (math.nan, "s", "not known"),
                                                 (3e-6, "m3/m", "3 mm³/mm"), (0, "J/m", "0 J/m"), (0.25, "s", "250 ms"),

@@ -1,6 +1,7 @@
 """The steady cut: a window that moves along, with closed balances, bit-equal restarts and rock at rest left at rest."""
 import signal
 
+import numpy as np
 import pytest
 
 from tests.running import (
@@ -48,12 +49,28 @@ def test_the_window_moves_and_the_balance_closes(never):
         assert_density_is_shown(never.out, never.options["control_radius"], 2500.0)
 
 
+def test_memory_stays_flat_as_the_cut_goes_on(never):
+    """Ten thousand steps over the second half, in which the window moves on and bonds break, take at most 8 MB."""
+    memory = never.summary["memory"]
+    middle, end = (np.interp(part * memory["time"][-1], memory["time"], memory["resident"]) for part in (0.5, 1.0))
+    assert 1e8 < middle <= never.summary["peak_memory"]["value"] and end - middle < 8e6
+
+
 def test_a_cut_goes_on_as_if_it_was_never_stopped(never, tmp_path):
     options = {**SMALL, **never.options, "checkpoint_interval": 0.01}
-    stopped = interrupt_script(SCRIPT, tmp_path / "again", signal.SIGTERM, 6, **options)
+    out, tables = tmp_path / "again", ("cracks.csv", "groove.csv", "chips.csv")
+    killed = interrupt_script(SCRIPT, out, signal.SIGKILL, 7, **options)
+    assert killed.code == -signal.SIGKILL, killed.stderr
+    # All cracks up to the last checkpoint, the groove and the chips of then.
+    cracks, groove, chips = ((out / name).read_text(encoding="utf-8") for name in tables)
+    assert (never.out / "cracks.csv").read_text(encoding="utf-8").startswith(cracks)
+    assert cracks.count("\n") > 1 and groove.count("\n") > 1 and chips.startswith("distance [m],")
+    for name in tables:
+        (out / name).write_text("later than the checkpoint", encoding="utf-8")
+    stopped = interrupt_script(SCRIPT, out, signal.SIGTERM, 8, **options)
     assert stopped.code == 128 + signal.SIGTERM, stopped.stderr
-    resumed = steady_cut(tmp_path / "again", "--resume", **never.options, checkpoint_interval=0.01)
-    assert_as_if_never_stopped(resumed, never)
+    resumed = steady_cut(out, "--resume", **never.options, checkpoint_interval=0.01)
+    assert_as_if_never_stopped(resumed, never, *tables)
 
 
 def test_segments_go_as_far_and_the_process_takes_as_long_as_it_is_slower(tmp_path):

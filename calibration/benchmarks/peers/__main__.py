@@ -14,7 +14,7 @@ from statistics import median
 
 import numpy as np
 
-from calibration import generated
+from calibration import command, generated
 from calibration.benchmarks.peers import STRAIN, lammps
 from calibration.campaigns.runs import RunFailed, run_script
 
@@ -120,8 +120,8 @@ def compare(folder, words):
 
 def main(words):
     """The command. -> exit code."""
-    if len(words) < 2 or words[0] != "lammps":
-        print(__doc__, file=sys.stderr)
+    if len(words) < 2 or words[0] != "lammps" or words[1].startswith("-"):
+        print("usage: python3 -m calibration.benchmarks.peers lammps DIR [--name value ...]", file=sys.stderr)
         return 2
     try:
         print(compare(Path(words[1]), words[2:]))
@@ -132,4 +132,5 @@ def main(words):
 
 
 if __name__ == "__main__":
+    command.help_if_asked()
     sys.exit(main(sys.argv[1:]))
