@@ -1,6 +1,7 @@
 """The laboratory of a rock fit: which script tests what, on which specimens, how fast; all runs kept."""
 import hashlib
 import json
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -50,7 +51,8 @@ class Laboratory:
         self.not_failed, self.failures = {}, []
 
     def measure(self, x, stage):
-        """{Observable: (packings,) values} at the logarithms x of the unknowns. Raises RunFailed."""
+        """{Observable: (packings,) values} at the logarithms x of the unknowns, in the order of the stage's seeds, nan
+        where a packing could not be measured. Raises RunFailed."""
         parameters = self.micro.parameters(x)
         tests = {(o.test, o.confinement) for o in self.micro.observables}
         # The longest first, so that both processes end together.
@@ -61,14 +63,13 @@ class Laboratory:
         self.not_failed[stage.name] = sorted(
             {f"{test} {1e-6 * confinement:g} MPa" if confinement else test
              for (test, confinement, _), run in done.items() if run.result("failed") == 0})
-        values = {o: np.array([run.result(o.result) for (test, confinement, _), run in done.items()
-                               if (test, confinement) == (o.test, o.confinement)]) for o in self.micro.observables}
-        found = {o: of_packings[np.isfinite(of_packings)] for o, of_packings in values.items()}
-        for o, of_packings in found.items():
-            if len(of_packings) < LEAST:
+        values = {o: np.array([run.result(o.result) if (run := done.get((o.test, o.confinement, seed))) else math.nan
+                               for seed in seeds[o.test, o.confinement]]) for o in self.micro.observables}
+        for o, of_packings in values.items():
+            if np.isfinite(of_packings).sum() < LEAST:
                 raise RunFailed(f"{o.name} could not be measured on {LEAST} packings of the stage {stage.name}: "
                                 f"{'; '.join(self.failures) or 'too few rows before the peak'}")
-        return found
+        return values
 
     def specimens(self, stage):
         """Words on the specimens of a stage."""
