@@ -158,8 +158,8 @@ def verdict(observable, values):
 
 
 def main(words):
-    """Command line. -> exit code: 0 where every target is met; 3 where some are missed; 4 where none is, but the scatter
-    of packings does not tell of some; 2: options that cannot be used; 1: a run failed."""
+    """Command line. -> exit code: 0 where every target is met; 3 where some are missed; 4 where none is, but packings
+    scatter too much to tell of some; 2: options that cannot be used; 1: a run failed."""
     if "--help" in words:
         parameters.describe(GROUPS, usage="python3 -m calibration.fit --youngs_modulus PA --poissons_ratio NU --ucs PA "
                             "--tensile_strength PA --out DIR [--name value ...]")

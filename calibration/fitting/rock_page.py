@@ -44,8 +44,8 @@ def answer(found, micro):
                       for is_so in (lambda one: one.missed, lambda one: not one.told))
     count = " to ".join(map(str, sorted({one.count for one in found.verdicts.values()})))
     met = len(found.verdicts) - len(missed) - len(untold)
-    lines = [f"{'All' if met == len(found.verdicts) else f'{met} of'} {len(found.verdicts)} targets are met, on {count} "
-             "packings that the fit has not seen."]
+    part = "All" if met == len(found.verdicts) else f"{met} of"
+    lines = [f"{part} {len(found.verdicts)} targets are met, on {count} packings that the fit has not seen."]
     if missed:
         words = ", ".join(f"{o.name} ({shown(o, found.verdicts[o].mean)} instead of {shown(o, o.target)}, standard "
                           f"error {shown(o, found.verdicts[o].error)})" for o in missed)

@@ -85,7 +85,8 @@ TARGETS = Group("targets", (
     _target("fracture_toughness", "K_IC; not needed"),
     _target("friction_angle", "of Mohr-Coulomb at low confinement; not needed"),
     Parameter("triaxial", "", "", file, "CSV table of strengths (commas, semicolons or tabs), columns sigma3 and "
-              "sigma1 in Pa, or sigma3_MPa and sigma1_MPa (kPa, GPa); not needed, and in place of friction_angle", "yours")))
+              "sigma1 in Pa, or sigma3_MPa and sigma1_MPa (kPa, GPa); not needed, and in place of friction_angle",
+              "yours")))
 ROCK = Group("rock", (
     Parameter("name", "fitted_rock", "", text, "of the rock"),
     Parameter("source", "laboratory values given to calibration.fit", "", text, "where the targets are from"),

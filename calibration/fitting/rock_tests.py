@@ -7,19 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from calibration.campaigns.runs import RunFailed
+from calibration.laboratory.loading import loading, strength
 
 COMMON = {"report": "false", "snapshot_period": 1, "rock_sampling_period": 50}
 """Looks at slipping contacts of rock enter the energy balance alone; at the default period they take a tenth of a test.
 """
-SPEED = {"compression": 13.6, "triaxial": 13.6, "tension": 84.0}
-"""Speed of a platen, m/s, over strength / E, of the deviatoric strength in a confined test. They are those of [Rojek
-2003]'s bonds at 0.1 m/s: a rock that fails at less strain is loaded as much more slowly. They raise strengths by 1.5 %,
-half as fast costs twice as much (calibration/results/generated/loading_speed.md)."""
-STRAIN = {"compression": 3.0, "triaxial": 2.0, "tension": 6.0}
-"""Strain at which a test ends at the latest, over strength / E of the target: a specimen that has not failed there is
-far too strong, or flows."""
-ROWS = 200
-"""Rows of a history up to a strain of strength / E."""
 DROP = 0.8
 """Part of the peak at which a test of strength ends. In 32 tests with grains, up to 15 MPa of confinement, none that
 fell so far rose above its peak again; to 0.5 a compression takes a fifth longer, a confined one up to twice as long."""
@@ -102,12 +94,10 @@ class Laboratory:
         t, radius = self.targets, self.micro.radius
         if test == "toughness":
             return "yade_scripts/toughness.py", {"size": _digits(stage.notched * radius)}
-        strength = {"compression": t.ucs, "tension": t.tensile_strength,
-                    "triaxial": dict(t.confined()).get(confinement, 0.0) - confinement}[test]
         side = _digits((stage.confined if test == "triaxial" else stage.side) * radius)
-        strain = strength / t.youngs_modulus
-        common = {"width": side, "height": side, "drop": DROP, "speed": _digits(SPEED[test] * strain),
-                  "strain_max": _digits(STRAIN[test] * strain), "record_strain": _digits(strain / ROWS)}
+        looked_for = strength(test, {"ucs": t.ucs, "tensile_strength": t.tensile_strength, "triaxial": t.confined()},
+                              confinement)
+        common = {"width": side, "height": side, "drop": DROP, **loading(test, looked_for / t.youngs_modulus)}
         if test == "triaxial":
             return "yade_scripts/triaxial.py", {**common, "confinement": confinement}
         return "yade_scripts/uniaxial.py", {"test": test, **common}

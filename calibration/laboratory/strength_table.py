@@ -7,8 +7,8 @@ from rockwear.model.rock_file import PROPERTIES
 
 UNITS = {"pa": 1.0, "kpa": 1e3, "mpa": 1e6, "gpa": 1e9}
 """{unit in the header of a column, in any case: Pa}."""
-OTHER_UNITS = {"psi", "ksi", "mpsi", "psf", "ksf", "tsf", "bar", "mbar", "kbar", "hpa", "atm", "torr", "kgf", "kg", "lbf",
-               "n", "kn", "mn", "mm2", "cm2", "m2", "mm²", "cm²", "m²"}
+OTHER_UNITS = {"psi", "ksi", "mpsi", "psf", "ksf", "tsf", "bar", "mbar", "kbar", "hpa", "atm", "torr", "kgf", "kg",
+               "lbf", "n", "kn", "mn", "mm2", "cm2", "m2", "mm²", "cm²", "m²"}
 """Words of units that stresses come in elsewhere."""
 LEAST = 1e3
 """Pa, the least stress but 0: what is less has another unit than its header says."""

@@ -20,7 +20,7 @@ GROUPS = groups(
               "[Bahaaddini 2018]: 0 to 10 MPa"),
     Parameter("membrane_interval", 100, "steps", integer(1), "between searches for the discs at the sides",
               "calibration/results/laboratory.md"),
-    speed=0.1)
+    test=lambda values: "triaxial", speed=0.1)
 
 NOTICED = 0.2
 """Deviatoric stress over the confinement from which a fall counts as failure: less is noise of the first loading."""
