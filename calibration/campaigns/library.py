@@ -29,17 +29,25 @@ def words_of(name, folder):
 
 
 def table():
-    """Lines: what each rock of the library is to be and what the laboratory measured."""
+    """Lines: what each rock of the library is to be and what the laboratory measured of that, and beside."""
     rows = []
     for name in rock_file.library():
         rock = rock_file.read(rock_file.find(name), OF_ROCK)
         for kind, part in rock.parts.items():
-            rows += [[name, kind, quantity, shown(rock.targets.get(quantity)), shown(found["mean"]),
-                      shown(found["standard_deviation"]), difference(rock.targets.get(quantity), found["mean"]),
-                      found["packings"], rock_file.PROPERTIES[quantity][0]]
-                     for quantity, found in part.measured.items()]
+            rows += [row(name, kind, quantity, rock.targets.get(quantity), part.measured.get(quantity))
+                     for quantity in (*part.measured, *(target for target in rock.targets
+                                                        if target not in part.measured))]
     return generated.table(["rock", "in", "property", "target", "measured", "± standard deviation", "difference",
                             "packings", "unit"], rows)
+
+
+def row(name, kind, quantity, target, found):
+    """Cells of a property. found: its entry in the rock's file, None where it was not measured."""
+    unit = rock_file.PROPERTIES[quantity][0]
+    if found is None:
+        return [name, kind, quantity, shown(target), "not measured", "–", "–", "–", unit]
+    return [name, kind, quantity, shown(target), shown(found["mean"]), shown(found["standard_deviation"]),
+            difference(target, found["mean"]), found["packings"], unit]
 
 
 def shown(value):
@@ -51,9 +59,12 @@ def shown(value):
 
 
 def difference(target, mean):
-    """Words on mean over target."""
-    if target is None or isinstance(target, list):
+    """Words on mean over target, of triaxial strengths at each confinement that has both."""
+    if target is None:
         return "–"
+    if isinstance(target, list):
+        sought = dict(target)
+        return "; ".join(difference(sought.get(least), largest) for least, largest in mean)
     return f"{100 * (mean / target - 1):+.1f} %"
 
 

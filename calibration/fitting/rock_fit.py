@@ -1,5 +1,6 @@
 """Fits the micro-parameters of a rock to laboratory values: search on small specimens, then on full ones, then a check
 on packings that the fit has not seen. The entry is calibration/fit.py."""
+import math
 import os
 import sys
 import time
@@ -40,7 +41,7 @@ alike."""
 @dataclass
 class Step:
     """One set of tests: the stage, the unknowns x (n,), {Observable: (packings,) values}; s since the fit
-    began."""
+    began. Packings are in the order of the stage's seeds, nan where one was not measured."""
 
     stage: str
     x: np.ndarray
@@ -64,13 +65,35 @@ class Fit:
 
 @dataclass(frozen=True)
 class Verdict:
-    """An observable on packings that the fit has not seen. mean, deviation: over `count` packings; met: the mean
-    differs from the target by no more than is allowed."""
+    """An observable on packings that the fit has not seen. mean, deviation: over `count` packings; off: how far the
+    mean lies from the target, allowed: how far it may."""
 
     mean: float
     deviation: float
     count: int
-    met: bool
+    off: float
+    allowed: float
+
+    @property
+    def error(self):
+        """Standard error of the mean."""
+        return self.deviation / math.sqrt(self.count)
+
+    @property
+    def told(self):
+        """Whether the packings tell if the target is met: the standard error is no larger than what is allowed, or the
+        mean is off by more than that and twice the error."""
+        return self.error <= self.allowed or self.off > self.allowed + 2 * self.error
+
+    @property
+    def met(self):
+        """Whether the target is met, as far as the packings tell."""
+        return self.told and self.off <= self.allowed
+
+    @property
+    def missed(self):
+        """Whether it is not."""
+        return self.told and self.off > self.allowed
 
 
 def fit(*, micro, measure, first_stage=STAGES[0], say=partial(print, flush=True)):
@@ -120,22 +143,23 @@ def statistics(values, part=1.0):
 
 
 def spread(observable, values):
-    """(mean, standard error), scaled, of the values (packings,) of an observable."""
+    """(mean, standard error), scaled, of the values (packings,) of an observable; nan: not measured."""
+    values = values[np.isfinite(values)]
     scaled = observable.scaled(values)
-    return float(observable.scaled(np.mean(values))), float(scaled.std(ddof=1) / np.sqrt(len(scaled)))
+    return float(observable.scaled(values.mean())), float(scaled.std(ddof=1) / np.sqrt(len(scaled)))
 
 
 def verdict(observable, values):
-    """Verdict of the values (packings,) of an observable."""
-    mean = float(np.mean(values))
+    """Verdict of the values (packings,) of an observable; nan: not measured."""
+    mean = float(np.nanmean(values))
     allowed = observable.tolerance if observable.kind == "nu" else observable.allowed * observable.target
-    return Verdict(mean=mean, deviation=float(np.std(values, ddof=1)), count=len(values),
-                   met=bool(abs(mean - observable.target) <= allowed))
+    return Verdict(mean=mean, deviation=float(np.nanstd(values, ddof=1)), count=int(np.isfinite(values).sum()),
+                   off=abs(mean - observable.target), allowed=allowed)
 
 
 def main(words):
-    """Command line. -> exit code: 0 where every target is met, 3 where some are not; 2: options that cannot be used;
-    1: a run failed."""
+    """Command line. -> exit code: 0 where every target is met; 3 where some are missed; 4 where none is, but packings
+    scatter too much to tell of some; 2: options that cannot be used; 1: a run failed."""
     if "--help" in words:
         parameters.describe(GROUPS, usage="python3 -m calibration.fit --youngs_modulus PA --poissons_ratio NU --ucs PA "
                             "--tensile_strength PA --out DIR [--name value ...]")
@@ -169,7 +193,14 @@ def main(words):
         return 1
     print("\n".join(rock_page.answer(found, micro)))
     print(f"rock: {folder / 'rock.json'}; page: {folder / 'fit.md'}")
-    return 0 if all(one.met for one in found.verdicts.values()) else 3
+    return exit_code(found.verdicts.values())
+
+
+def exit_code(verdicts):
+    """Of the command, of all Verdicts."""
+    if any(one.missed for one in verdicts):
+        return 3
+    return 0 if all(one.told for one in verdicts) else 4
 
 
 def _folder(word):

@@ -1,6 +1,5 @@
 """What a rock fit leaves: rock.json, fit.md with its answer first, a figure, and a line for each step."""
 import json
-import math
 
 import matplotlib
 import numpy as np
@@ -24,28 +23,38 @@ def shown(observable, value):
 
 def progress(step):
     """One line on a step."""
-    parts = [f"{o.name} {shown(o, float(np.mean(values)))} ({off(o, values)})" for o, values in step.values.items()]
+    parts = [f"{o.name} {shown(o, float(np.nanmean(values)))} ({off(o, values)})" for o, values in step.values.items()]
     return f"{step.seconds / 60:5.1f} min  {step.stage:8s} {', '.join(parts)}"
 
 
 def off(observable, values):
     """Words on the difference of the mean from the target."""
-    difference = float(np.mean(values)) - observable.target
+    difference = float(np.nanmean(values)) - observable.target
     return f"{difference:+.3f}" if observable.kind == "nu" else f"{100 * difference / observable.target:+.1f} %"
 
 
+def allowed(observable):
+    """Words on the difference from the target that is allowed."""
+    return f"{observable.tolerance:.3f}" if observable.kind == "nu" else f"{100 * observable.allowed:g} %"
+
+
 def answer(found, micro):
-    """Lines that say what was reached and what was not."""
-    missed = [o for o, one in found.verdicts.items() if not one.met]
-    counts = sorted({one.count for one in found.verdicts.values()})
-    count = " to ".join(map(str, counts))
-    if not missed:
-        lines = [f"All {len(found.verdicts)} targets are met, on {count} packings that the fit has not seen."]
-    else:
-        words = ", ".join(f"{o.name} ({shown(o, found.verdicts[o].mean)} instead of {shown(o, o.target)})"
-                          for o in missed)
-        lines = [f"{len(found.verdicts) - len(missed)} of {len(found.verdicts)} targets are met, on {count} packings "
-                 f"that the fit has not seen. Not reached: {words}."]
+    """Lines that say what was reached, what was not, and of what the packings do not tell."""
+    missed, untold = ([o for o, one in found.verdicts.items() if is_so(one)]
+                      for is_so in (lambda one: one.missed, lambda one: not one.told))
+    count = " to ".join(map(str, sorted({one.count for one in found.verdicts.values()})))
+    met = len(found.verdicts) - len(missed) - len(untold)
+    part = "All" if met == len(found.verdicts) else f"{met} of"
+    lines = [f"{part} {len(found.verdicts)} targets are met, on {count} packings that the fit has not seen."]
+    if missed:
+        words = ", ".join(f"{o.name} ({shown(o, found.verdicts[o].mean)} instead of {shown(o, o.target)}, standard "
+                          f"error {shown(o, found.verdicts[o].error)})" for o in missed)
+        lines[0] += f" Not reached: {words}."
+    if untold:
+        words = ", ".join(f"{o.name} ({shown(o, found.verdicts[o].mean)}, standard error "
+                          f"{shown(o, found.verdicts[o].error)}, target {shown(o, o.target)}, allowed "
+                          f"{allowed(o)})" for o in untold)
+        lines[0] += f" Not told, because packings scatter by more than is allowed: {words}."
     bounds = micro.at_bounds(found.x)
     if bounds:
         lines.append(f"At the end of its range: {', '.join(bounds)}. The bond law {micro.law} cannot come nearer.")
@@ -61,17 +70,21 @@ def answer(found, micro):
 
 
 def envelope(found, micro):
-    """{property: (values (packings,), unit)} of Mohr and Coulomb, nothing without confined strengths."""
+    """{property: (values (packings,), unit)} of Mohr and Coulomb, of the packings on which all its strengths were
+    measured; nothing without confined strengths."""
     values = found.steps[-1].values
     points = [o for o in micro.observables if o.kind == "confined"]
     if not points:
         return {}
     points.insert(0, next(o for o in micro.observables if o.name == "ucs"))
+    # Each in the order of the seeds: fewer packings are confined than not, the first ones.
+    whole = [strengths for strengths in zip(*(values[o] for o in points)) if np.isfinite(strengths).all()]
     try:
-        lines = [mohr_coulomb([o.confinement for o in points], strengths)
-                 for strengths in zip(*(values[o] for o in points))]
+        lines = [mohr_coulomb([o.confinement for o in points], strengths) for strengths in whole]
     except ParameterError:
         # Strengths of some packing that do not rise with the confinement.
+        return {}
+    if len(lines) < 2:
         return {}
     return {name: (np.array([getattr(line, name).value for line in lines]), PROPERTIES[name][0])
             for name in ("cohesion", "friction_angle")}
@@ -116,8 +129,8 @@ def page(found, *, micro, targets, values):
     lines += generated.table(
         ["", "target", "mean ± standard deviation", "packings", "standard error", "difference", "allowed", "met"],
         [[o.name, shown(o, o.target), f"{shown(o, one.mean)} ± {shown(o, one.deviation)}", one.count,
-          shown(o, one.deviation / math.sqrt(one.count)), off(o, [one.mean]),
-          f"{o.tolerance:.3f}" if o.kind == "nu" else f"{100 * o.allowed:g} %", "yes" if one.met else "**no**"]
+          shown(o, one.error), off(o, [one.mean]), allowed(o),
+          "yes" if one.met else "**no**" if one.told else "**not told**"]
          for o, one in found.verdicts.items()])
     lines += [f"Discs of {radii(values)} mm; specimens of {found.specimens}.", ""]
     if targets.left_out:
@@ -137,7 +150,7 @@ def page(found, *, micro, targets, values):
     lines += generated.table(
         ["stage", "min", *micro.names, *(o.name for o in micro.observables)],
         [[step.stage, f"{step.seconds / 60:.1f}", *(f"{value:.4g}" for value in np.exp(step.x)),
-          *(f"{shown(o, float(np.mean(step.values[o])))} ({off(o, step.values[o])})" for o in micro.observables)]
+          *(f"{shown(o, float(np.nanmean(step.values[o])))} ({off(o, step.values[o])})" for o in micro.observables)]
          for step in found.steps])
     return lines
 
@@ -154,7 +167,7 @@ def figure(found, micro):
     axes = panels[0]
     for number, o in enumerate(micro.observables):
         colour = f"C{number}"
-        axes.plot([np.mean(step.values[o]) / o.target for step in found.steps], "o-", color=colour, label=o.name,
+        axes.plot([np.nanmean(step.values[o]) / o.target for step in found.steps], "o-", color=colour, label=o.name,
                   markersize=4)
         last = found.steps[-1].values[o] / o.target
         axes.plot(np.full(len(last), len(found.steps) - 0.6 + 0.08 * number), last, "x", color=colour)

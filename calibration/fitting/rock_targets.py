@@ -1,14 +1,14 @@
 """What a fitted rock is to be: laboratory values from the command line and a table, checked against each other."""
-import csv
 import math
-import re
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
+from calibration.fitting.relations import elastic_guess
+from calibration.laboratory import strength_table
 from rockwear.kernels.bond_laws import BOND_LAWS
 from rockwear.kernels.checks import ParameterError, finite, require, within
+from rockwear.kernels.membrane import STIFF
 from rockwear.kernels.packing import POROSITY_LIMITS
 from rockwear.kernels.parameter import Group, Parameter, choice, file, integer, number, plausible, text
 from rockwear.model.rock_file import PROPERTIES, RADIUS, RockPresets, check_properties
@@ -38,11 +38,11 @@ STAGES = "small", "full", "check"
 """Of a fit, in this order."""
 GIVEN = "porosity", "weibull_modulus"
 """Parameters of the rock that are given and not fitted, beside its grains."""
+DENSITIES = 300.0, 10e3
+"""kg/m3, of rocks."""
 KEPT = "rotation", "bond_shear_energy", "bond_crushing", "crushing_hardening"
 """Parameters of the rock that the fit begins with, which stay as they are there; the crushing strength where no ductile
 points are fitted."""
-UNITS = {"kpa": 1e3, "mpa": 1e6, "gpa": 1e9}
-"""Pa, of the units that the header of a table may name."""
 GRAINS = (5.0, 0.0), (11.0, 1.8), (math.inf, 2.2)
 """(largest UCS over tensile strength, grain_edge over the mean radius that can give it). Without grains and with the
 cohesive law the ratio is 6 to 7 for any shear strength; at an edge of 1.8 radii it is 6.2, 8.1 and 13.0 for shear over
@@ -51,10 +51,15 @@ CONFINEMENTS = 0.1, 0.3
 """Confinements over UCS at which a friction angle is fitted."""
 HIGHEST = 1.5
 """Confinement over UCS above which a rock is ductile: grains crush there (cohesive bonds alone can)."""
-MOST_POINTS, MOST_DUCTILE = 3, 2
+MOST_POINTS, MOST_DUCTILE = 5, 2
 """Confined tests of one packing up to there and beyond, each dear."""
 FIRST_POINT = 0.2
 """Largest difference of a table's unconfined strength from UCS, over UCS."""
+SCATTER = 0.25
+"""Largest part by which a strength may lie below one at less confinement: single specimens of a rock scatter by 10 to
+15 %, the difference of two by up to twice that."""
+OVERLAP = 0.9
+"""Part of the largest confinement of the laboratory that a fit uses, at the first guess of kn: that may fall."""
 
 
 def wanted(name):
@@ -80,7 +85,8 @@ TARGETS = Group("targets", (
     _target("fracture_toughness", "K_IC; not needed"),
     _target("friction_angle", "of Mohr-Coulomb at low confinement; not needed"),
     Parameter("triaxial", "", "", file, "CSV table of strengths (commas, semicolons or tabs), columns sigma3 and "
-              "sigma1 in Pa, or sigma3_MPa and sigma1_MPa; not needed, and in place of friction_angle", "yours")))
+              "sigma1 in Pa, or sigma3_MPa and sigma1_MPa (kPa, GPa); not needed, and in place of friction_angle",
+              "yours")))
 ROCK = Group("rock", (
     Parameter("name", "fitted_rock", "", text, "of the rock"),
     Parameter("source", "laboratory values given to calibration.fit", "", text, "where the targets are from"),
@@ -89,6 +95,8 @@ ROCK = Group("rock", (
     Parameter("bond_law", LAWS[-1] if LAWS[-1] in BOND_LAWS else LAWS[0], "",
               choice(*(law for law in LAWS if law in BOND_LAWS)), "force law of the bonds"),
     *(OF_ROCK[name] for name in GIVEN),
+    Parameter("density", OF_ROCK["rock_density"].default, "kg/m3", number(*DENSITIES), "bulk density, that of the rock "
+              "in every scene", OF_ROCK["rock_density"].source),
     Parameter("grain_edge", -1.0, "m", number(-1), "mean edge of grains; 0: none; -1: chosen by ucs over "
               "tensile_strength, which grains raise")))
 SEARCH = Group("search", (
@@ -105,7 +113,7 @@ GROUPS = [TARGETS, ROCK, SEARCH, OUTPUT]
 class Targets:
     """Properties of the rock in SI. fracture_toughness: None where it is not given; points: ((sigma3, sigma1), ...) at
     sigma3 > 0, ductile: those above HIGHEST ucs; friction_angle, deg, None where it is not given; left_out: words on
-    points that are not fitted."""
+    points that are pooled or not fitted."""
 
     youngs_modulus: float
     poissons_ratio: float
@@ -157,16 +165,27 @@ def targets_of(values):
             f"at least {least:.3g}, half of what the most brittle bonds have at these radii", "Pa sqrt(m)")
     within("porosity", values["porosity"], *POROSITY_LIMITS[2])
     if values["triaxial"]:
-        return Targets(**found, **_chosen(read_table(values["triaxial"]), values["triaxial"], ucs=found["ucs"],
-                                          crushes=values["bond_law"] == "cohesive"))
+        chosen = _chosen(strength_table.read(values["triaxial"], "triaxial"), values["triaxial"], ucs=found["ucs"],
+                         crushes=values["bond_law"] == "cohesive")
+        return _checked(Targets(**found, **chosen), "triaxial", values["triaxial"])
     if values["friction_angle"] is not None:
         sine = math.sin(math.radians(values["friction_angle"]))
         slope = (1 + sine) / (1 - sine)
         require(slope <= RISE[1], "friction_angle", values["friction_angle"], "at most 71, as of rocks",
                 "deg")
-        return Targets(**found, points=tuple((part * found["ucs"], (1 + slope * part) * found["ucs"])
-                                             for part in CONFINEMENTS))
+        points = tuple((part * found["ucs"], (1 + slope * part) * found["ucs"]) for part in CONFINEMENTS)
+        return _checked(Targets(**found, points=points), "friction_angle", f"{values['friction_angle']:g} deg")
     return Targets(**found)
+
+
+def _checked(targets, name, given):
+    """The targets, with no confinement at which discs overlap too far. name, given: the parameter that asks for it."""
+    kn, _ = elastic_guess(youngs_modulus=targets.youngs_modulus, poissons_ratio=targets.poissons_ratio)
+    most = OVERLAP * STIFF * kn
+    for least, _ in targets.confined():
+        require(least <= most, name, f"{given}, tested at sigma3 = {least:g} Pa", f"without points above {most:.3g} "
+                f"Pa, {most / targets.youngs_modulus:.2g} of youngs_modulus: discs overlap too far there")
+    return targets
 
 
 def least_toughness(tensile_strength, *, radius):
@@ -196,70 +215,94 @@ def _check_strengths(found):
             "Pa sqrt(m)")
 
 
-def read_table(path):
-    """{sigma3: mean sigma1}, Pa, of a CSV file with the columns sigma3 and sigma1, in Pa, or in kPa, MPa or GPa if the
-    header says so, between commas, semicolons or tabs.
+def _chosen(rows, path, *, ucs, crushes):
+    """{"points", "ductile": points to fit, "left_out": words on the others} of the rows [(sigma3, sigma1)] of a table.
+    crushes: whether bonds can.
 
-    Further columns are allowed. Raises ParameterError (triaxial).
+    Repeats at one confinement count as their mean. Neighbours whose strengths do not rise are scatter: they are pooled,
+    as in isotonic regression, and so are the closest neighbours where there are more than MOST_POINTS.
     """
-    try:
-        with open(path, newline="", encoding="utf-8-sig") as file_of_table:
-            lines = file_of_table.read().splitlines()
-        between = max(",;\t", key=next(filter(str.strip, lines), "").count)
-        rows = [(line, row) for line, row in enumerate(csv.reader(lines, delimiter=between, skipinitialspace=True), 1)
-                if any(cell.strip() for cell in row)]
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise ParameterError("triaxial", str(path), f"a readable CSV file ({error})") from None
-    heads = [head.strip().lower() for head in rows[0][1]] if rows else []
-    places, factors = {}, {}
-    for name in ("sigma3", "sigma1"):
-        fitting = [k for k, head in enumerate(heads) if re.match(rf"{name}(?![0-9])", head)]
-        require(len(fitting) == 1, "triaxial", str(path), f"a table with one column {name}")
-        places[name] = fitting[0]
-        factors[name] = next((factor for unit, factor in UNITS.items() if unit in heads[fitting[0]]), 1.0)
-    found = {}
-    for line, row in rows[1:]:
-        pair = [_cell(path, line, row, places[name], factors[name]) for name in ("sigma3", "sigma1")]
-        found.setdefault(pair[0], []).append(pair[1])
-    require(found, "triaxial", str(path), "a table with at least one row")
-    return {least: float(np.mean(found[least])) for least in sorted(found)}
-
-
-def _cell(path, line, row, place, factor):
-    try:
-        value = factor * finite("triaxial", row[place])
-        require(0 <= value <= PROPERTIES["triaxial"][2] and (value == 0 or value >= 1e3), "triaxial", value, "a stress")
-    except (IndexError, ParameterError):
-        raise ParameterError("triaxial", str(Path(path)), f"a table of stresses in Pa, unlike line {line}: "
-                             f"{','.join(row)[:60]} (a column in MPa says so in its header)") from None
-    return value
-
-
-def _chosen(table, path, *, ucs, crushes):
-    """{"points", "ductile": points to fit, "left_out": words on the others} of a table. crushes: whether bonds can."""
+    table = {least: _mean([row for row in rows if row[0] == least])[1] for least, _ in sorted(rows)}
     unconfined = table.get(0.0, ucs)
     require(abs(unconfined / ucs - 1) <= FIRST_POINT, "triaxial", f"{path}, sigma1 = {unconfined:g} Pa at sigma3 = 0",
             f"within {100 * FIRST_POINT:g} % of ucs = {ucs:g}")
-    strengths = [ucs, *(table[least] for least in table if least)]
-    require(len(strengths) > 1 and all(a < b for a, b in zip(strengths, strengths[1:])), "triaxial", str(path),
-            "a table in which sigma1 rises with sigma3 from ucs on")
-    low = [least for least in table if 0 < least <= HIGHEST * ucs]
+    require(any(table), "triaxial", str(path), "a table with a confined strength")
+    _check_order({least: largest for least, largest in table.items() if least}, path, ucs)
+    groups = _rising([[row for row in rows if row[0] == least] for least in table if least], ucs)
+    low = [group for group in groups if _mean(group)[0] <= HIGHEST * ucs]
     require(low, "triaxial", str(path), f"a table with a point at a confinement of at most {HIGHEST:g} ucs")
     least, most = RISE
-    rise = (table[low[-1]] - ucs) / low[-1]
-    require(least <= rise <= most, "triaxial", f"{path}, sigma1 = {table[low[-1]]:g} Pa at sigma3 = {low[-1]:g} Pa",
+    confinement, strength = _mean(low[-1])
+    require(least <= (strength - ucs) / confinement <= most, "triaxial",
+            f"{path}, sigma1 = {strength:g} Pa at sigma3 = {confinement:g} Pa",
             f"above ucs = {ucs:g} by {least:g} to {most:g} sigma3, as of what has friction")
-    kept = _spread(low, MOST_POINTS)
-    ductile = _spread([least for least in table if least > HIGHEST * ucs], MOST_DUCTILE) if crushes else []
-    others = [f"{1e-6 * least:g}" for least in table if least and least not in kept + ductile]
-    return {"points": tuple((least, table[least]) for least in kept),
-            "ductile": tuple((least, table[least]) for least in ductile),
-            "left_out": f"Points of the table at {', '.join(others)} MPa are not fitted." if others else ""}
+    high = groups[len(low):]
+    low = _fewer(low, MOST_POINTS)
+    ductile = _spread(high, MOST_DUCTILE) if crushes else []
+    return {"points": tuple(map(_mean, low)), "ductile": tuple(map(_mean, ductile)),
+            "left_out": " ".join([*filter(None, map(_pooled, low + ductile)),
+                                  *_unused([group for group in high if group not in ductile])])}
+
+
+def _mean(group):
+    """(sigma3, sigma1) of rows, in six digits."""
+    return tuple(float(f"{value:.6g}") for value in np.mean(group, axis=0))
+
+
+def _check_order(table, path, ucs):
+    """Raise ParameterError for strengths that scatter alone does not explain."""
+    highest, where = ucs, "ucs"
+    for least, largest in table.items():
+        row = f"{path}, sigma1 = {largest:g} Pa at sigma3 = {least:g} Pa"
+        require(largest > least, "triaxial", row, "more than sigma3")
+        require(largest >= (1 - SCATTER) * highest, "triaxial", row,
+                f"no more than {100 * SCATTER:g} % below {where} = {highest:g}: less is no scatter")
+        if largest > highest:
+            highest, where = largest, f"sigma1 at {least:g} Pa"
+
+
+def _rising(groups, ucs):
+    """Groups of rows whose mean strengths rise, from above ucs on where there is more than one."""
+    found = []
+    for group in groups:
+        found.append(group)
+        while len(found) > 1 and _mean(found[-1])[1] <= _mean(found[-2])[1]:
+            found[-2:] = [found[-2] + found[-1]]
+    while len(found) > 1 and _mean(found[0])[1] <= ucs:
+        found[:2] = [found[0] + found[1]]
+    return found
+
+
+def _fewer(groups, most):
+    """At most `most` groups of rows: the nearest neighbours in sigma3 become one."""
+    while len(groups) > most:
+        places = [_mean(group)[0] for group in groups]
+        k = int(np.argmin(np.diff(places)))
+        groups = [*groups[:k], groups[k] + groups[k + 1], *groups[k + 2:]]
+    return groups
+
+
+def _pooled(group):
+    """Words on a group of several confinements."""
+    places = _places(group)
+    return f"Points at {', '.join(places)} MPa count as one at {1e-6 * _mean(group)[0]:.3g} MPa, their mean." \
+        if len(places) > 1 else ""
+
+
+def _unused(groups):
+    """[words] on groups that are not fitted."""
+    places = [place for group in groups for place in _places(group)]
+    return [f"Points of the table at {', '.join(places)} MPa are not fitted."] if places else []
+
+
+def _places(group):
+    """Confinements of rows, MPa, as words."""
+    return [f"{1e-6 * least:g}" for least in sorted({least for least, _ in group})]
 
 
 def _spread(values, most):
-    """At most `most` of sorted values, the first and the last among them."""
-    return sorted({values[round(k)] for k in np.linspace(0, len(values) - 1, most)}) if values else []
+    """At most `most` of a sorted list, the first and the last among them."""
+    return [values[k] for k in sorted({round(k) for k in np.linspace(0, len(values) - 1, most)})] if values else []
 
 
 def start_of(values):
@@ -289,7 +332,7 @@ def given_of(values, targets, start=None):
     elif edge < 0:
         ratio = targets.ucs / targets.tensile_strength
         edge = (values["radius_min"] + values["radius_max"]) / 2 * next(part for most, part in GRAINS if ratio <= most)
-    found = {name: start.get(name, values[name]) if values[name] == OF_ROCK[name].default else values[name]
-             for name in GIVEN}
+    given = {**{name: values[name] for name in GIVEN}, "rock_density": values["density"]}
+    found = {name: start.get(name, value) if value == OF_ROCK[name].default else value for name, value in given.items()}
     return {**found, "grain_edge": float(f"{edge:.4g}"), **{
         name: start[name] for name in KEPT if start.get(name) and not (name == "bond_crushing" and targets.ductile)}}

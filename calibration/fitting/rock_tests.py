@@ -1,24 +1,17 @@
 """The laboratory of a rock fit: which script tests what, on which specimens, how fast; all runs kept."""
 import hashlib
 import json
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from calibration.campaigns.runs import RunFailed
+from calibration.laboratory.loading import loading, strength
 
 COMMON = {"report": "false", "snapshot_period": 1, "rock_sampling_period": 50}
 """Looks at slipping contacts of rock enter the energy balance alone; at the default period they take a tenth of a test.
 """
-SPEED = {"compression": 13.6, "triaxial": 13.6, "tension": 84.0}
-"""Speed of a platen, m/s, over strength / E, of the deviatoric strength in a confined test. They are those of [Rojek
-2003]'s bonds at 0.1 m/s: a rock that fails at less strain is loaded as much more slowly. They raise strengths by 1.5 %,
-half as fast costs twice as much (calibration/results/generated/loading_speed.md)."""
-STRAIN = {"compression": 3.0, "triaxial": 2.0, "tension": 6.0}
-"""Strain at which a test ends at the latest, over strength / E of the target: a specimen that has not failed there is
-far too strong, or flows."""
-ROWS = 200
-"""Rows of a history up to a strain of strength / E."""
 DROP = 0.8
 """Part of the peak at which a test of strength ends. In 32 tests with grains, up to 15 MPa of confinement, none that
 fell so far rose above its peak again; to 0.5 a compression takes a fifth longer, a confined one up to twice as long."""
@@ -50,7 +43,8 @@ class Laboratory:
         self.not_failed, self.failures = {}, []
 
     def measure(self, x, stage):
-        """{Observable: (packings,) values} at the logarithms x of the unknowns. Raises RunFailed."""
+        """{Observable: (packings,) values} at the logarithms x of the unknowns, in the order of the stage's seeds, nan
+        where a packing could not be measured. Raises RunFailed."""
         parameters = self.micro.parameters(x)
         tests = {(o.test, o.confinement) for o in self.micro.observables}
         # The longest first, so that both processes end together.
@@ -61,14 +55,13 @@ class Laboratory:
         self.not_failed[stage.name] = sorted(
             {f"{test} {1e-6 * confinement:g} MPa" if confinement else test
              for (test, confinement, _), run in done.items() if run.result("failed") == 0})
-        values = {o: np.array([run.result(o.result) for (test, confinement, _), run in done.items()
-                               if (test, confinement) == (o.test, o.confinement)]) for o in self.micro.observables}
-        found = {o: of_packings[np.isfinite(of_packings)] for o, of_packings in values.items()}
-        for o, of_packings in found.items():
-            if len(of_packings) < LEAST:
+        values = {o: np.array([run.result(o.result) if (run := done.get((o.test, o.confinement, seed))) else math.nan
+                               for seed in seeds[o.test, o.confinement]]) for o in self.micro.observables}
+        for o, of_packings in values.items():
+            if np.isfinite(of_packings).sum() < LEAST:
                 raise RunFailed(f"{o.name} could not be measured on {LEAST} packings of the stage {stage.name}: "
                                 f"{'; '.join(self.failures) or 'too few rows before the peak'}")
-        return found
+        return values
 
     def specimens(self, stage):
         """Words on the specimens of a stage."""
@@ -101,12 +94,10 @@ class Laboratory:
         t, radius = self.targets, self.micro.radius
         if test == "toughness":
             return "yade_scripts/toughness.py", {"size": _digits(stage.notched * radius)}
-        strength = {"compression": t.ucs, "tension": t.tensile_strength,
-                    "triaxial": dict(t.confined()).get(confinement, 0.0) - confinement}[test]
         side = _digits((stage.confined if test == "triaxial" else stage.side) * radius)
-        strain = strength / t.youngs_modulus
-        common = {"width": side, "height": side, "drop": DROP, "speed": _digits(SPEED[test] * strain),
-                  "strain_max": _digits(STRAIN[test] * strain), "record_strain": _digits(strain / ROWS)}
+        looked_for = strength(test, {"ucs": t.ucs, "tensile_strength": t.tensile_strength, "triaxial": t.confined()},
+                              confinement)
+        common = {"width": side, "height": side, "drop": DROP, **loading(test, looked_for / t.youngs_modulus)}
         if test == "triaxial":
             return "yade_scripts/triaxial.py", {**common, "confinement": confinement}
         return "yade_scripts/uniaxial.py", {"test": test, **common}

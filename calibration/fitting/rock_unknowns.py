@@ -22,9 +22,9 @@ SHEAR, RATIO, TENSION, FRICTION = 3.0, 8.1, 1.6, 0.7
 """First guesses: shear over tensile strength of a bond at this UCS over tensile strength, with whose square it goes; a
 bond's tensile strength over the rock's; friction."""
 STEEPNESS, BEND = 6.9, 1.4
-"""First guess of friction from confined strengths: the rise of sigma1 over that of sigma3 between the two highest
-points at which it is FRICTION, and with which power of the rise it goes. In grains of 2 radii friction of 0.7, 0.45 and
-0.40 gave rises of 6.9, 4.8 and 4.7 between 8 and 30 MPa (two packings)."""
+"""First guess of friction from confined strengths: the rise of sigma1 over that of sigma3 up to the highest point, from
+the last one of at most half its confinement, at which it is FRICTION, and with which power of the rise it goes. In
+grains of 2 radii friction of 0.7, 0.45 and 0.40 gave rises of 6.9, 4.8 and 4.7 between 8 and 30 MPa (two packings)."""
 CRUSHING = 1.35
 """First guess: crushing strength of bonds over the highest sigma1 at which the rock is ductile. Bentheim's bonds at 400
 MPa gave 1.38 at 150 MPa of confinement, at 250 MPa 1.20 (one packing)."""
@@ -124,7 +124,8 @@ class Micro:
         length = max(toughness**2 / t.youngs_modulus * kn / tension**2, 1.01 * self.radius)
         friction = FRICTION
         if t.points:
-            (low, weaker), (high, stronger) = ((0.0, t.ucs), *t.points)[-2:]
+            high, stronger = t.points[-1]
+            low, weaker = [point for point in ((0.0, t.ucs), *t.points) if point[0] <= 0.5 * high][-1]
             friction = min(max(FRICTION * ((stronger - weaker) / (high - low) / STEEPNESS)**BEND, 0.1), 1.2)
         return {"kn": kn, "kt_over_kn": ratio, "tension": tension, "shear": shear, "mu": friction, "length": length}
 

@@ -5,12 +5,11 @@
 
 Runs yade_scripts/triaxial.py at each confinement (Pa) and yade_scripts/uniaxial.py in tension with each seed, two at a
 time; finished runs are kept, so that an interrupted command resumes. Further names and values go to both scripts.
---points: peak stresses of a laboratory, a CSV file with columns sigma3... and sigma1... in Pa, or in MPa where the
-header says MPa; those up to the largest confinement are fitted and drawn beside ours. Writes envelope.json,
+--points: peak stresses of a laboratory, a CSV file with columns sigma3... and sigma1... in Pa, or in kPa, MPa or GPa
+where the header says so; those up to the largest confinement are fitted and drawn beside ours. Writes envelope.json,
 envelope.md, envelope.png and provenance.json into DIR.
 """
 import argparse
-import csv
 import json
 import sys
 from pathlib import Path
@@ -20,7 +19,8 @@ import numpy as np
 
 from calibration import generated
 from calibration.campaigns.runs import RunFailed, Runs
-from rockwear.kernels.checks import ParameterError, finite, require
+from calibration.laboratory import strength_table
+from rockwear.kernels.checks import ParameterError, require
 from rockwear.kernels.parameter import integer, listed, number, numbers
 from rockwear.kernels.strength_envelope import hoek_brown, mohr_coulomb
 from rockwear.report import palette, plots
@@ -73,22 +73,6 @@ def fitted(points, tension=()):
 
 def _plain(fit):
     return {name: part._asdict() if hasattr(part, "_asdict") else part for name, part in fit._asdict().items()}
-
-
-def read_points(file):
-    """[{"sigma3": Pa, "peak_stress": Pa}] of a laboratory's CSV file. Raises ParameterError."""
-    try:
-        with open(file, encoding="utf-8", newline="") as lines:
-            rows = list(csv.DictReader(lines))
-    except (OSError, UnicodeDecodeError) as error:
-        raise ParameterError("points", str(file), f"a CSV file that can be read ({error})") from None
-    header = list(rows[0]) if rows else []
-    columns = [next((name for name in header if name and name.startswith(wanted)), None)
-               for wanted in ("sigma3", "sigma1")]
-    require(None not in columns, "points", str(file), "a table with columns sigma3... and sigma1...")
-    scale = [MPA if "MPa" in name else 1.0 for name in columns]
-    return [{name: finite(f"points, {column}", row[column]) * factor
-             for name, column, factor in zip(("sigma3", "peak_stress"), columns, scale)} for row in rows]
 
 
 # ---- what is written
@@ -181,8 +165,9 @@ def main(words):
         seeds = [int(seed) for seed in listed(numbers(integer(0))("seeds", given.seeds, ""))]
         require(len(rest) % 2 == 0 and all(name.startswith("--") for name in rest[::2]), "arguments", " ".join(rest),
                 "pairs of --name value")
-        laboratory = [point for point in (read_points(given.points) if given.points else [])
-                      if point["sigma3"] <= max(confinements)]
+        rows = strength_table.read(given.points, "points") if given.points else []
+        laboratory = [{"sigma3": least, "peak_stress": largest} for least, largest in rows
+                      if least <= max(confinements)]
         laboratory = fitted(laboratory) if laboratory else None
         ours = measure(given.folder, confinements=confinements, seeds=seeds,
                        **{name[2:]: value for name, value in zip(rest[::2], rest[1::2])})

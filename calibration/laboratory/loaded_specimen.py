@@ -5,11 +5,13 @@ across it and free to turn: each end is perfectly capped and without friction. R
 and against turning as well.
 """
 import math
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 from yade import O
 
+from calibration.laboratory.loading import SCALED, LoadedRock
 from rockwear.engines import access
 from rockwear.engines.energy_guard import EnergyGuard
 from rockwear.engines.failure import Failure
@@ -40,6 +42,7 @@ LOADING = (
     Parameter("strain_max", 0.02, "", above_zero, "the test ends at this shortening or lengthening over the width"),
     Parameter("record_strain", 1e-5, "", above_zero, "shortening over the width between rows of history.csv"))
 """Parameters of every test."""
+BY_THE_ROCK = "with a rock of known strength and E by their ratio, unless it is given"
 LOOK_IN_SPACE = 2
 """Steps between looks at softening bonds in space, where steps are long against the time in which a bond opens: with 10
 the energy balance misses 5 %, with 3 0.6 %, with 2 less."""
@@ -49,15 +52,21 @@ IN_SPACE = parameters.BLOCK.without("scale_factor", "full", "gravity")
 """The specimen."""
 
 
-def groups(*own, rock=IN_THE_PLANE, without=(), **defaults):
+def groups(*own, rock=IN_THE_PLANE, without=(), test=None, **defaults):
     """Parameter groups of a test. own: its own Parameters, before those of every test; rock: IN_THE_PLANE or IN_SPACE;
-    without: names of those of every test that it does not have; defaults: other than there."""
+    without: names of those of every test that it does not have; test: {name: value} -> name of the test whose loading
+    a rock decides on (loading.LoadedRock), None: it does not; defaults: other than there."""
     def kept(group):
         return group.without(*(p.name for p in group.parameters if p.name in without))
 
+    bonds, loading = parameters.BONDS.parameters, LOADING
+    if test:
+        bonds = [replace(p, presets=LoadedRock(parameters.OF_ROCK, test=test)) if p.name == "rock" else p
+                 for p in bonds]
+        loading = [replace(p, meaning=f"{p.meaning}; {BY_THE_ROCK}") if p.name in SCALED else p for p in loading]
     return parameters.with_defaults(
-        [kept(rock), parameters.BONDS,
-         kept(Group("loading", (*own, *LOADING))),
+        [kept(rock), replace(parameters.BONDS, parameters=bonds),
+         kept(Group("loading", (*own, *loading))),
          parameters.ACCURACY.only("time_step_fraction", "time_step", "rock_sampling_period"), parameters.DENSITY_MAP],
         **{"time_step_fraction": 0.6, **defaults})
 

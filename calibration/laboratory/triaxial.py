@@ -11,6 +11,7 @@ from yade import utils
 from calibration.laboratory.loaded_specimen import SpecimenOutput, SpecimenTest, groups
 from rockwear.engines.confinement import Membrane, PressedEnds
 from rockwear.kernels.checks import require
+from rockwear.kernels.membrane import STIFF
 from rockwear.kernels.parameter import Parameter, integer, number
 from rockwear.kernels.stress_strain import measured
 
@@ -19,10 +20,8 @@ GROUPS = groups(
               "[Bahaaddini 2018]: 0 to 10 MPa"),
     Parameter("membrane_interval", 100, "steps", integer(1), "between searches for the discs at the sides",
               "calibration/results/laboratory.md"),
-    speed=0.1)
+    test=lambda values: "triaxial", speed=0.1)
 
-STIFF = 0.02
-"""Largest confinement over kn: above it discs overlap by some per cent of a radius, and bonds are no small springs."""
 NOTICED = 0.2
 """Deviatoric stress over the confinement from which a fall counts as failure: less is noise of the first loading."""
 TRANSITS = 20

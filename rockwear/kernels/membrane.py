@@ -3,6 +3,8 @@ import numpy as np
 
 from rockwear.kernels.checks import positive
 
+STIFF = 0.02
+"""Largest pressure over kn: above it discs overlap by some per cent of a radius, and bonds are no small springs."""
 SAMPLES = 4
 """Points in a smallest radius at which the membrane's height is found."""
 

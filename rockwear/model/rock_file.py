@@ -273,13 +273,17 @@ class RockPresets(Presets):
         """Path of the rock."""
         return find(value)
 
-    def defaults(self, value, values):
-        """{name: value} at the radii of the scene."""
-        path = find(value)
-        rock = read(path, self.declared)
+    def read(self, value, values):
+        """(RockFile, name of its part) for a scene of these values. Raises ParameterError."""
+        rock = read(find(value), self.declared)
         kind = next(kind for kind, names in RADII.items() if all(name in values for name in names))
         require(kind in rock.parts, "rock", value, f"a rock with a part for the {kind}: it has one for the "
                 f"{' and the '.join(rock.parts)} alone")
+        return rock, kind
+
+    def defaults(self, value, values):
+        """{name: value} at the radii of the scene."""
+        rock, kind = self.read(value, values)
         part = rock.parts[kind]
         found = {name: part.parameters[name] for name in part.parameters if self.only is None or name in self.only}
         for name in found:

@@ -1,7 +1,9 @@
 """Rocks of the library and of files in the scenes: accepted, refused, part of what a run is."""
 import json
 
-from tests.running import BLOCK, ROOT, SMALL, arguments, assert_refused, refusals, run_script, tooth_cycles
+import pytest
+
+from tests.running import BLOCK, ROOT, SMALL, arguments, assert_refused, history, refusals, run_script, tooth_cycles
 
 LIBRARY = ROOT / "rockwear/rocks"
 
@@ -25,6 +27,25 @@ def test_a_rock_in_the_plane_and_none_for_space(tmp_path):
 def test_help_shows_it():
     run = run_script(ROOT / "yade_scripts/uniaxial.py", "--help")
     assert run.code == 0 and "--rock NAME|FILE" in run.stdout.partition("\nbonds:")[2].split("\n\n")[0]
+    assert "of each platen; with a rock of known strength and E by their ratio, unless it is given" in run.stdout
+
+
+@pytest.mark.parametrize("script, given, found", [
+    ("uniaxial", {"test": "tension"}, {"speed": 0.01432, "record_strain": 8.526e-7, "strain_max": 0.02}),
+    ("brazilian", {"speed": 0.03, "diameter": 0.02}, {"speed": 0.03, "record_strain": 8.526e-7})])
+def test_a_laboratory_test_is_loaded_by_the_strength_of_its_rock(script, given, found, tmp_path):
+    """Bentheim: E 15.699 GPa and 2.6769 MPa in tension were measured. What is given wins."""
+    sizes = {} if script == "brazilian" else {"width": 0.02, "height": 0.015}
+    words = arguments({**sizes, **given, "rock": "bentheim", "report": "false"})
+    run = run_script(ROOT / f"yade_scripts/{script}.py", *words, "--out", str(tmp_path), out=tmp_path)
+    assert run.code == 0, run.stderr
+    parameters = run.summary["parameters"]
+    assert {name: parameters[name] for name in found} == pytest.approx(found, rel=1e-3)
+    if script == "uniaxial":
+        # At the default of record_strain there are three rows between 10 and 25 % of the peak.
+        stress = history(tmp_path)["stress [Pa]"]
+        loading = stress[:stress.argmax()] / stress.max()
+        assert ((loading > 0.1) & (loading < 0.25)).sum() > 20
 
 
 def test_a_rock_that_changes_or_moves_is_refused_by_a_resumed_run(tmp_path):
