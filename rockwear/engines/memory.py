@@ -193,7 +193,7 @@ def class_of(found):
 
 
 _FORCES = {"normal_force": "normalForce", "shear_force": "shearForce", "viscous_force": "normalViscous"}
-_CONSTANTS = {"friction": "tangensOfFrictionAngle", "kn": "kn", "ks": "ks", "cn": "cn"}
+_CONSTANTS = {"friction": "tangensOfFrictionAngle", "ks": "ks", "cn": "cn"}
 _GEOMETRY = {"normal": "normal", "increment": "shearInc"}
 """Vectors and numbers of a contact: their names in YADE."""
 

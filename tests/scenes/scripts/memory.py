@@ -121,7 +121,7 @@ def contacts_of_yade():
 def contact_of_the_tool():
     """{name: from memory, from Python} of all that is read of a contact with a dashpot."""
     contact = Interaction(id1=1, id2=2)
-    contact.geom, contact.phys = ScGeom(), FrictViscoPhys(kn=1.5, ks=2.5, cn=3.5, tangensOfFrictionAngle=4.5)
+    contact.geom, contact.phys = ScGeom(), FrictViscoPhys(ks=2.5, cn=3.5, tangensOfFrictionAngle=4.5)
     parts = {"phys": {**memory._FORCES, **memory._CONSTANTS}, "geom": memory._GEOMETRY}
     vectors = [getattr(getattr(contact, part), attribute) for part, names in parts.items()
                for name, attribute in names.items() if name not in memory._CONSTANTS]
