@@ -28,9 +28,9 @@ def table(found):
     shares = sorted(((seconds / spent, name) for name, seconds in found["seconds"].items()), reverse=True)
     largest = ", ".join(f"{name.replace('_', ' ')} {100 * share:.0f} %" for share, name in shares if share > 0.01)
     return ["## Engines in a steady cut", "",
-            f"The cut of make run, {found['discs']} discs, {found['bonds']} bonds: all Python engines cost "
-            f"{100 * found['overhead']:.1f} % of YADE's own step of {1e3 * found['step']:.2f} ms, by their own clocks "
-            f"over {found['steps']} steps. Of their time: {largest}.", "",
+            f"The cut of make run, {found['discs']} discs, {found['bonds']} bonds: all Python costs "
+            f"{100 * found['overhead']:.1f} % of YADE's own step of {1e3 * found['step']:.2f} ms, over "
+            f"{found['steps']} steps. Of its time: {largest}.", "",
             f"Over the next {found['sampled']} steps, the defaults against sampling in every step, on the same motion:",
             "", *generated.table(["sum", "difference", "over the tool's work"], errors),
             f"The distribution of wear differs by {100 * found['distribution']:.2f} %. The residual of energy is "

@@ -1,9 +1,10 @@
 """A boundary that absorbs: springs and dashpots between rock particles and bodies at rest, as native contacts."""
 import numpy as np
-from yade import O, Subdomain, Vector3, ViscElMat, utils
+from yade import O, Vector3, ViscElMat, utils
 
 from rockwear.engines.access import IN_PLANE, IN_PLANE_WITHOUT_TURNING
 from rockwear.engines.base import Engine
+from rockwear.engines.memory import Motions
 from rockwear.kernels.checks import require
 from rockwear.kernels.viscous_spring import stable_dashpots, viscous_spring
 
@@ -47,10 +48,16 @@ class AbsorbingBoundary(Engine):
         self.places, self.normals, self.forces = (np.empty((0, 2)) for _ in range(3))
         self.radii, self.kn, self.kt, self.cn, self.ct = (np.empty(0) for _ in range(5))
         self.absorbed = self.followed = self.power = 0.0
+        self._find()
 
     def connect(self):
+        self._find()
         # YADE does not save permanent forces.
         self._set_forces(range(len(self.numbers)))
+
+    def _find(self):
+        """Follow the held particles of the scene that is in O now."""
+        self.motions = Motions(self.numbers.tolist())
 
     def hold(self, numbers, normals, areas, distances, displacements=0.0):
         """Hold these particles (k,) where they are now.
@@ -75,11 +82,12 @@ class AbsorbingBoundary(Engine):
         exerted = self._springs(np.broadcast_to(displacements, given.shape)[first], normals, *total[:2])
         exerted += self._release(held)
         start = len(self.numbers)
-        states = self._states(held)
         radii = [O.bodies[number].shape.radius for number in held.tolist()]
-        new = (held, self._supports(len(held)), radii, states[:, :2], normals, exerted, *total)
+        places = Motions(held.tolist()).read("in_plane").T
+        new = (held, self._supports(len(held)), radii, places, normals, exerted, *total)
         for column, values in zip(COLUMNS, new):
             setattr(self, column, np.concatenate([getattr(self, column), values]))
+        self._find()
         added = range(start, len(self.numbers))
         for k in added:
             self._connect_support(k)
@@ -114,6 +122,7 @@ class AbsorbingBoundary(Engine):
         self.idle = np.concatenate([self.idle, self.supports[gone]])
         for column in COLUMNS:
             setattr(self, column, np.delete(getattr(self, column), gone, axis=0))
+        self._find()
         return exerted
 
     def _follow(self):
@@ -160,11 +169,6 @@ class AbsorbingBoundary(Engine):
         # Else a step right after one of YADE's loop goes without permanent forces.
         O.forces.f(0, sync=True)
 
-    @staticmethod
-    def _states(numbers):
-        values = np.fromiter(Subdomain().getStateValuesFromIds(numbers.tolist()), float)
-        return values.reshape(len(numbers), 13)
-
     def _split(self, vectors):
         """(k,) components along the normals and across them."""
         x, y = self.normals.T
@@ -172,7 +176,7 @@ class AbsorbingBoundary(Engine):
 
     def _moved(self):
         """(k, 2) m that the held particles have moved by."""
-        return self._states(self.numbers)[:, :2] - self.places
+        return self.motions.read("in_plane").T - self.places
 
     @staticmethod
     def _springs(moved, normals, kn, kt):
@@ -195,7 +199,7 @@ class AbsorbingBoundary(Engine):
         """W that the dashpots take now."""
         if not len(self.numbers):
             return 0.0
-        along, across = self._split(self._states(self.numbers)[:, 3:5])
+        along, across = self._split(self.motions.read("moving").T)
         return float(np.sum(self.cn * along**2 + self.ct * across**2))
 
     def act(self):

@@ -100,6 +100,30 @@ def _set_damage(places, numbers, omega):
     places.write("damage", numbers, (omega, np.where(omega > 0.0, strain, 0.0)))
 
 
+def _weaken(omega, cohesion, coupling, Rt):
+    """Set the cohesion in YADE, of which it takes the part 1 - omega. (k,) omega, cohesion: their places."""
+    if len(omega):
+        MEMORY[cohesion] = Rt / (1.0 - coupling * MEMORY.take(omega, mode="wrap"))
+
+
+class _Kept:
+    """The bonds that a function gives, and where in memory lies what `name` says of them, until `forget`."""
+
+    def __init__(self, places, name, bonds):
+        self.places, self.name, self.bonds, self.found = places, name, bonds, None
+
+    def forget(self):
+        """Other bonds are there now, or meet the condition."""
+        self.found = None
+
+    def now(self):
+        """Numbers (k,), places (c, k)."""
+        if self.found is None:
+            numbers = self.bonds()
+            self.found = numbers, self.places.of(self.name, numbers)
+        return self.found
+
+
 class CpmBonds(BondLog):
     """All bonds of the rock under a law that YADE's concrete model (Law2_ScGeom_CpmPhys_Cpm) is.
 
@@ -145,6 +169,8 @@ class CpmBonds(BondLog):
         self.contacts, self.lengths, self.strains = {}, np.zeros(count), None
         self.places = Places(count, vectors=_VECTORS, groups=_GROUPS,
                              numbers={name: ("slipped", behind) for name, behind in _behind_slip().items()})
+        self.there = _Kept(self.places, "looked_at", lambda: np.flatnonzero(self.status != SEPARATED))
+        self.slipping = _Kept(self.places, "slip", lambda: np.flatnonzero(self.active & (self.status != SEPARATED)))
         self.crushing = crushing.Crushing(laws=self.laws, hardening=self.law.hardening, places=self.places)
         self.rising = self._weakened(np.zeros(0, int))
         """Of the bonds whose damage rose between the last two looks, by opening: every step sets their cohesion."""
@@ -191,6 +217,8 @@ class CpmBonds(BondLog):
         self._prepare()
 
     def _follow(self, numbers):
+        self.there.forget()
+        self.slipping.forget()
         found = []
         for n in numbers.tolist():
             interaction = O.interactions[tuple(self.pairs[n].tolist())]
@@ -207,12 +235,7 @@ class CpmBonds(BondLog):
             self.look_at_all()
         if (O.iter + 1) % self.between_samples == 0:
             self._prepare()
-        self._weaken(*self.rising)
-
-    def _weaken(self, omega, cohesion, coupling, Rt):
-        """Set the cohesion in YADE, of which it takes the part 1 - omega. (k,) omega, cohesion: their places."""
-        if len(omega):
-            MEMORY[cohesion] = Rt / (1.0 - coupling * MEMORY.take(omega, mode="wrap"))
+        _weaken(*self.rising)
 
     def _weakened(self, numbers):
         """What `_weaken` takes of these bonds (k,)."""
@@ -221,16 +244,17 @@ class CpmBonds(BondLog):
 
     def _prepare(self):
         """Keep slip and force (N) of the bonds as they are before a step whose work is sampled."""
-        numbers = np.flatnonzero(self.active & (self.status != SEPARATED))
-        self.before = numbers, self.places.read("slip", numbers)
+        numbers, places = self.slipping.now()
+        self.before = numbers, places, MEMORY.take(places, mode="wrap")
 
     def _sample(self):
         """The work of slip of the last step."""
-        numbers, before = self.before
+        numbers, places, before = self.before
         # The memory of bonds that have separated meanwhile is no longer theirs.
         there = self.status[numbers] != SEPARATED
-        numbers, before = numbers[there], before[:, there]
-        now = self.places.read("slip", numbers)
+        if not there.all():
+            numbers, places, before = numbers[there], places[:, there], before[:, there]
+        now = MEMORY.take(places, mode="wrap")
         # YADE leaves the slip of a bond without any shear strength as it is.
         let_go = _vanish(now[SHEAR]) & ~_vanish(before[SHEAR])
         slid = np.flatnonzero(_differ(now[SLIPPED], before[SLIPPED]) | let_go)
@@ -248,15 +272,16 @@ class CpmBonds(BondLog):
             for n in np.flatnonzero((self.status == BROKEN) & (self.omega >= 1.0)).tolist():
                 if not self.contacts[n].interaction.isReal:
                     self._separate(n)
-        there = np.flatnonzero(self.status != SEPARATED)
-        now = self.places.read("looked_at", there)
+        there, places = self.there.now()
+        now = MEMORY.take(places, mode="wrap")
         if self.crushing.possible:
             numbers, work = self.crushing.harden(there, now[CRUSHED], self.lengths)
             self.energy_crushed += float(np.sum(work))
             self._dissipate(numbers, work, True)
-        omega, let_go = now[OMEGA], self.active[there]
-        let_go[let_go] = _vanish(self.places.read("shear_force", there[let_go]))
-        changed = np.flatnonzero((omega != self.omega[there]) | ~_vanish(now[SLIPPED]) | let_go)
+        omega, changed = now[OMEGA], (now[OMEGA] != self.omega[there]) | ~_vanish(now[SLIPPED])
+        active, places = self.slipping.now()
+        let_go = active[_vanish(MEMORY.take(places[SHEAR], mode="wrap"))]
+        changed[np.searchsorted(there, let_go)] = True
         numbers, omega = there[changed], omega[changed]
         self.rising = self._weakened(numbers[:0])
         if not len(numbers):
@@ -270,11 +295,13 @@ class CpmBonds(BondLog):
         damaged = (slip > 0.0) & (self.omega[numbers] < SPENT) & (self.slip_end[numbers] < math.inf)
         if damaged.any():
             self._damage(numbers[damaged], slip[damaged], forces[:, damaged])
-        self._weaken(*self._weakened(numbers[self.coupling[numbers] > 0.0]))
+        _weaken(*self._weakened(numbers[self.coupling[numbers] > 0.0]))
 
     def _begin(self, numbers):
         """These bonds are found to have slipped or softened."""
-        self.active[numbers] = True
+        if len(numbers):
+            self.active[numbers] = True
+            self.slipping.forget()
         for n in numbers.tolist():
             self._dissipate(n, _slip_before(self.laws[n], self.contacts[n]), True)
 
@@ -345,6 +372,8 @@ class CpmBonds(BondLog):
         if self.status[n] != SEPARATED:
             self.parted.append(n)
         self.status[n] = SEPARATED
+        self.there.forget()
+        self.slipping.forget()
         self.contacts.pop(n, None)
         self.lengths[n] = 0.0
 

@@ -4,9 +4,10 @@ import math
 import numpy as np
 from yade import O, utils
 
-from rockwear.engines.access import FIXED, IN_PLANE, rock_states
+from rockwear.engines.access import FIXED, IN_PLANE
 from rockwear.engines.base import FORCES, Engine
 from rockwear.engines.bond_log import SEPARATED
+from rockwear.engines.memory import Motions
 from rockwear.kernels.fragments import pieces
 from rockwear.kernels.rigid_motion import rigid_parts
 
@@ -26,16 +27,15 @@ class BackgroundDamping(Engine):
         self.dissipated = 0.0
 
     def connect(self):
-        self.states = [O.bodies[i].state for i in self.bodies]
+        self.motions = Motions(self.bodies)
 
     def act(self):
         factor = math.exp(-self.rate * self.elapsed())
         self.dissipated += utils.kineticEnergy() * (1 - factor * factor)
-        for state in self.states:
-            # What a window holds aside now may be rock later.
-            if state.blockedDOFs != FIXED:
-                state.vel = state.vel * factor
-                state.angVel = state.angVel * factor
+        # What a window holds aside now may be rock later.
+        free = np.flatnonzero([state.blockedDOFs != FIXED for state in self.motions.states])
+        for name in ("velocity", "spin"):
+            self.motions.write(name, free, self.motions.read(name, free) * factor)
 
     def state(self):
         return {"dissipated": self.dissipated}
@@ -68,31 +68,29 @@ class GrainDamping(Engine):
         self.dissipated = 0.0
 
     def connect(self):
-        self.states = [O.bodies[n].state for n in range(self.rock.count)]
+        self.motions = Motions(range(self.rock.count))
 
     def act(self):
         rock, lost = self.rock, 1.0 - math.exp(-self.rate * self.elapsed())
         piece = pieces(rock.count, rock.pairs, self.within & (self.bonds.status != SEPARATED))
         # Of grains that a boundary holds in part it is not known how they would move.
-        held = np.array([state.blockedDOFs != IN_PLANE for state in self.states])
+        held = np.array([state.blockedDOFs != IN_PLANE for state in self.motions.states])
         free = np.flatnonzero((np.bincount(piece, held) == 0)[piece] & (np.bincount(piece) > 1)[piece])
         if not len(free):
             return
-        states = rock_states(rock)[free]
         own = dict(masses=rock.masses[free], inertias=rock.inertias[free])
         forces = np.array([(force[0], force[1]) for force in map(O.forces.f, free.tolist())])
-        torques = np.array([O.forces.t(n)[2] for n in free.tolist()])
-        motion = dict(velocities=states[:, 3:5] + 0.5 * O.dt * forces / own["masses"][:, None],
-                      spins=states[:, 8] + 0.5 * O.dt * torques / own["inertias"])
-        velocities, spins = rigid_parts(np.unique(piece[free], return_inverse=True)[1], positions=states[:, :2], **own,
-                                        **motion)
+        torques = np.array([torque[2] for torque in map(O.forces.t, free.tolist())])
+        now, turning = self.motions.read("moving", free).T, self.motions.read("turning", free)[0]
+        motion = dict(velocities=now + 0.5 * O.dt * forces / own["masses"][:, None],
+                      spins=turning + 0.5 * O.dt * torques / own["inertias"])
+        velocities, spins = rigid_parts(np.unique(piece[free], return_inverse=True)[1], **own, **motion,
+                                        positions=self.motions.read("in_plane", free).T)
         vibration, rolling = motion["velocities"] - velocities, motion["spins"] - spins
         self.dissipated += 0.5 * lost * (2.0 - lost) * float(
             own["masses"] @ (vibration**2).sum(axis=1) + own["inertias"] @ rolling**2)
-        for n, (x, y), spin in zip(free.tolist(), (states[:, 3:5] - lost * vibration).tolist(),
-                                   (states[:, 8] - lost * rolling).tolist()):
-            state = self.states[n]
-            state.vel, state.angVel = (x, y, 0.0), (0.0, 0.0, spin)
+        self.motions.write("moving", free, (now - lost * vibration).T)
+        self.motions.write("turning", free, turning - lost * rolling)
 
     def state(self):
         return {"dissipated": self.dissipated}

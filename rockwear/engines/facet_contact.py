@@ -5,6 +5,7 @@ import numpy as np
 from yade import O, Vector3
 
 from rockwear.engines.access import contact_energy, yade_friction_law
+from rockwear.engines.memory import place
 from rockwear.engines.tool_contact import ToolContact
 from rockwear.kernels.facet_notch import joined_depth
 from rockwear.kernels.wear_laws import FRICTION, WORK
@@ -73,7 +74,7 @@ class FacetContact(ToolContact):
         stored = self._energy(known=self.shear_before) if self.reshaped else 0.0
         self.notches = []
         successions = [pair for rock, group in self.shared for pair in self._select(rock, group)]
-        self._sample_all(self._real())
+        self._sample_all(self._now())
         acting = {pieces(new): old for old, new in successions}
         for one, other in self._pairs():
             self._join(one, other, acting.get(pieces(one), one))
@@ -82,7 +83,7 @@ class FacetContact(ToolContact):
         if self.reshaped:
             self.reshaping_energy += self._energy() - stored
         self.reshaped = False
-        self._store_shear(self._real())
+        self._store_shear(self._now())
 
     def shape_has_changed(self):
         """The contacts of the next step are those with another shape."""
@@ -106,13 +107,13 @@ class FacetContact(ToolContact):
         found = [(real.get((one, rock)), real.get((other, rock))) for one, other, rock in self.notches]
         return [pair for pair in found if None not in pair]
 
-    def _sample(self, contact, elapsed):
+    def _sample(self, contact, now, elapsed):
         # A duplicate has no force, and no contact time in which heat would pass.
         if not inactive(contact):
-            super()._sample(contact, elapsed)
+            super()._sample(contact, now, elapsed)
 
-    def _add_slip(self, contact, before, after, slip):
-        super()._add_slip(contact, before, after, slip)
+    def _add_slip(self, contact, now, before, after, slip):
+        super()._add_slip(contact, now, before, after, slip)
         self.in_yade_balance += slip * after
 
     def _select(self, rock, group):
@@ -201,7 +202,7 @@ class FacetContact(ToolContact):
         """Take the contact's force off the particle in this step, and its friction off YADE's sum of plastic
         dissipation."""
         interaction, _, rock, tool_first = contact
-        counted = self._slip(contact)[1] * interaction.phys.shearForce.norm()
+        counted = self._slip(contact, self._values(place(interaction)))[1] * interaction.phys.shearForce.norm()
         self.functor.initPlasticDissipation(self.functor.plasticDissipation() - counted)
         force = interaction.phys.normalForce + interaction.phys.shearForce
         force = -force if tool_first else force

@@ -11,9 +11,10 @@ import ctypes
 import os
 import sys
 from functools import cache
+from operator import attrgetter, itemgetter
 
 import numpy as np
-from yade import FrictPhys, Interaction, O, ScGeom, config
+from yade import FrictViscoPhys, Interaction, O, ScGeom, State, config
 
 from rockwear.kernels.checks import require
 
@@ -26,6 +27,8 @@ MEMORY = np.frombuffer((ctypes.c_double * 2**45).from_address(SIZE))
 """All memory that a process may have with addresses of 48 bits, but for its first number."""
 WORDS = MEMORY.view(np.int64)
 """The same as integers: pointers, counts, numbers of bodies."""
+ONE_BY_ONE, WORDS_ONE_BY_ONE = memoryview(MEMORY), memoryview(WORDS)
+"""The same again, for a few numbers at a time: numpy takes as long for one as for a hundred."""
 MARKS = (0.31415926535, -9.87654321e-3, 5.55e11)
 """Written by Python and looked for in memory; no vector of YADE's has them."""
 
@@ -126,12 +129,12 @@ class Places:
         for name, (vector, along) in self.rows.items():
             self.places[name][:, numbers] = first[vector[:, 0]] + along
 
-    def of(self, name, numbers):
-        """(c, k) indices in MEMORY of what lies under this name in the objects (k,)."""
-        return self.places[name].take(numbers, axis=1)
+    def of(self, name, numbers=None):
+        """(c, k) indices in MEMORY of what lies under this name in the objects (k,), or in all of them."""
+        return self.places[name] if numbers is None else self.places[name].take(numbers, axis=1)
 
-    def read(self, name, numbers):
-        """(c, k) what lies under this name in the objects (k,)."""
+    def read(self, name, numbers=None):
+        """(c, k) what lies under this name in the objects (k,), or in all of them."""
         # MEMORY has no end that an index could be beyond, and to look for one takes time.
         return MEMORY.take(self.of(name, numbers), mode="wrap")
 
@@ -140,10 +143,46 @@ class Places:
         MEMORY[self.of(name, numbers)] = values
 
 
-# ---- contacts
+# ---- bodies
 
 TRIED = 5
-"""Contacts that are made to find out how they lie in memory."""
+"""States of bodies, or contacts, that are made to find out how they lie in memory."""
+
+
+@cache
+def _position():
+    """How far behind its velocity YADE keeps the position of a body, which it gives by value only. Raises
+    ParameterError."""
+    states = [State() for _ in range(TRIED)]
+    for k, state in enumerate(states):
+        state.pos = [mark * (k + 1.0) for mark in MARKS]
+    check(states[0], {"velocity": attrgetter("vel"), "spin": attrgetter("angVel")})
+    found = [offset("position", [state.vel for state in states], [state.pos[along] for state in states]) - along
+             for along in range(3)]
+    require_memory(found[0] == found[1] == found[2], "position")
+    return found[0]
+
+
+class Motions(Places):
+    """Where these bodies are and how they move now; here they are numbered from 0. bodies: ids.
+
+    "velocity" (m/s) and "spin" (rad/s) are vectors; "in_plane" is x, y (m), "moving" their rates (m/s), "turning" that
+    about z (rad/s).
+    """
+
+    def __init__(self, bodies):
+        self.states = [O.bodies[body].state for body in bodies]
+        x = _position()
+        super().__init__(
+            len(self.states), vectors={"velocity": attrgetter("vel"), "spin": attrgetter("angVel")},
+            numbers={"x": ("velocity", x), "y": ("velocity", x + 1), "vx": ("velocity", 0), "vy": ("velocity", 1),
+                     "turning": ("spin", 2)},
+            groups={"in_plane": ("x", "y"), "moving": ("vx", "vy")})
+        self.find(np.arange(len(self.states)), self.states)
+
+
+# ---- contacts
+
 CONTAINER = 24
 """Words of YADE's container of contacts among which its list of them is looked for."""
 
@@ -153,23 +192,67 @@ def class_of(found):
     return int(WORDS[place(found)])
 
 
+_FORCES = {"normal_force": "normalForce", "shear_force": "shearForce", "viscous_force": "normalViscous"}
+_CONSTANTS = {"friction": "tangensOfFrictionAngle", "ks": "ks", "cn": "cn"}
+_GEOMETRY = {"normal": "normal", "increment": "shearInc"}
+"""Vectors and numbers of a contact: their names in YADE."""
+
+
 @cache
 def contact_layout():
-    """{name: how far behind} of a contact's pointers to its geometry and its constants and of its two bodies; and of
-    the forces (N) and the friction behind the constants of a contact with friction. Raises ParameterError."""
-    geoms, physes = [ScGeom() for _ in range(TRIED)], [FrictPhys() for _ in range(TRIED)][::-1]
+    """{name: how far behind} of a contact's pointers to its geometry and its constants and of its two bodies; behind
+    the constants, of the forces (N), the friction and the stiffness and damping (N/m, N s/m) of a contact with
+    friction, of which the viscous ones are there at the tool only; behind the geometry, of the normal and the shear
+    increment (m). Raises ParameterError."""
+    geoms, physes = [ScGeom() for _ in range(TRIED)], [FrictViscoPhys() for _ in range(TRIED)][::-1]
     contacts = [Interaction(id1=11 * k, id2=12345 + k) for k in range(TRIED)]
-    for contact, geom, phys, mark in zip(contacts, geoms, physes, MARKS * TRIED):
-        contact.geom, contact.phys, phys.tangensOfFrictionAngle = geom, phys, mark
-    forces = {"normal_force": lambda phys: phys.normalForce, "shear_force": lambda phys: phys.shearForce}
-    check(physes[0], forces)
+    marks = {name: [mark * (1.0 + k) for mark in MARKS * TRIED] for k, name in enumerate(_CONSTANTS)}
+    for k, (contact, geom, phys) in enumerate(zip(contacts, geoms, physes)):
+        contact.geom, contact.phys = geom, phys
+        for name, attribute in _CONSTANTS.items():
+            setattr(phys, attribute, marks[name][k])
+    found = {}
+    for one, names in ((physes[0], _FORCES), (geoms[0], _GEOMETRY)):
+        vectors = {name: attrgetter(attribute) for name, attribute in names.items()}
+        check(one, vectors)
+        found |= {name: place(vector(one)) - place(one) for name, vector in vectors.items()}
     # A class has its table of functions first.
     require_memory(class_of(physes[0]) == class_of(physes[1]) != class_of(geoms[0]), "class")
     return {"geom": offset("geom", contacts, [SIZE * (place(geom) + 1) for geom in geoms]),
             "phys": offset("phys", contacts, [SIZE * (place(phys) + 1) for phys in physes]),
             "bodies": offset("bodies", contacts, [contact.id1 + (contact.id2 << 32) for contact in contacts]),
-            "friction": offset("friction", physes, MARKS * TRIED),
-            **{name: place(vector(physes[0])) - place(physes[0]) for name, vector in forces.items()}}
+            **{name: offset(name, physes, values) for name, values in marks.items()}, **found}
+
+
+@cache
+def contact_columns(*names):
+    """(c, 1) how far behind the constants, or the geometry, of a contact vectors and numbers of these names lie."""
+    layout = contact_layout()
+    return np.array([[layout[name] + along] for name in names for along in range(1 if name in _CONSTANTS else 3)])
+
+
+class ContactReader:
+    """Reads vectors and numbers of these names of the constants, or of the geometry, `part` ("phys", "geom"), of one
+    contact at a time, as one tuple."""
+
+    def __init__(self, part, *names):
+        columns = contact_columns(*names).ravel()
+        self.pointer, self.begin, self.end = contact_layout()[part], int(columns.min()), int(columns.max()) + 1
+        self.pick = itemgetter(*(columns - self.begin).tolist())
+
+    def of(self, contact):
+        """Numbers of the contact at this place, which must be in contact now."""
+        there = pointed(WORDS_ONE_BY_ONE[contact + self.pointer])
+        return self.pick(ONE_BY_ONE[there + self.begin:there + self.end].tolist())
+
+
+def in_contact(places):
+    """Which contacts of these places (k,) are in contact now, (l,), and the places of their constants and of their
+    geometry, (l,) each. The contacts must be kept."""
+    layout = contact_layout()
+    phys, geom = (WORDS.take(places + layout[name], mode="wrap") for name in ("phys", "geom"))
+    real = ((phys != 0) & (geom != 0)).nonzero()[0]
+    return real, pointed(phys[real]), pointed(geom[real])
 
 
 def all_contacts():

@@ -7,10 +7,8 @@ from yade import CpmPhys, InsertionSortCollider, JCFpmPhys, O
 
 from rockwear.engines.access import SLIDING, body_erased, contact_energy, yade_engine, yade_friction_law
 from rockwear.engines.base import FORCES, Engine
-from rockwear.engines.memory import MEMORY, WORDS, all_contacts, class_of, contact_layout, pointed
-
-ALONG = np.arange(3)[:, None]
-"""Components of a vector."""
+from rockwear.engines.memory import (
+    MEMORY, WORDS, all_contacts, class_of, contact_columns, contact_layout, in_contact, pointed)
 
 
 @cache
@@ -64,7 +62,9 @@ class RockContacts(Engine):
         first, second = bodies & 0xffffffff, bodies >> 32
         loose = np.maximum(first, second) < self.particles
         made = np.flatnonzero(phys)
-        loose[made[np.isin(WORDS.take(pointed(phys[made])), bond_classes())]] = False
+        kinds = WORDS.take(pointed(phys[made]))
+        for bond in bond_classes():
+            loose[made[kinds == bond]] = False
         first, second, places = first[loose], second[loose], places[loose]
         order = np.lexsort((second, first))
         return places[order].tolist(), list(zip(first[order].tolist(), second[order].tolist()))
@@ -113,13 +113,10 @@ class RockFriction(RockContacts):
 
     def _sliding(self):
         """(k,) which of `possible` slide now; a few more, perhaps, by round-off."""
-        layout = contact_layout()
-        phys = WORDS.take(self.places + layout["phys"])
-        real = np.flatnonzero((phys != 0) & (WORDS.take(self.places + layout["geom"]) != 0))
-        phys = pointed(phys[real])
-        mu = MEMORY.take(phys + layout["friction"])
-        normal, shear = (MEMORY.take(phys + layout[name] + ALONG) for name in ("normal_force", "shear_force"))
-        limit = (SLIDING * mu)**2 * (normal * normal).sum(axis=0)
+        real, phys, _ = in_contact(self.places)
+        values = MEMORY.take(phys + contact_columns("normal_force", "shear_force", "friction"), mode="wrap")
+        normal, shear = values[:3], values[3:6]
+        limit = (SLIDING * values[6])**2 * (normal * normal).sum(axis=0)
         return real[(shear * shear).sum(axis=0) > (1.0 - 1e-12) * limit]
 
     def _sample(self, interaction, phys, mu, elapsed):

@@ -1,17 +1,34 @@
 """Contacts of the tool: forces, friction work by particle, and the time that each pair is in contact."""
+import math
 from collections import namedtuple
 
 import numpy as np
 
-from yade import InsertionSortCollider, O, Vector3
+from yade import InsertionSortCollider, O
 
 from rockwear.engines.access import SLIDING, contact_energy, yade_engine
 from rockwear.engines.base import FORCES, Engine
+from rockwear.engines.memory import ContactReader, place
 from rockwear.kernels.wear_laws import NORMAL, WORK
 
 Contact = namedtuple("Contact", "interaction piece rock tool_first")
 """A contact of the tool: YADE's interaction, the tool's piece (particle or facet) and the rock particle, and whether
 the piece is the interaction's first body."""
+
+Values = namedtuple("Values", "normal_force shear_force viscous_force friction ks cn normal increment")
+"""What YADE has of a contact now: forces (N), its friction, stiffness (N/m) and damping (N s/m), the normal and the
+shear increment (m) of the step; vectors are tuples."""
+AT_REST = (0.0, 0.0, 0.0)
+
+
+def dot(a, b):
+    """Of two vectors."""
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def norm(a):
+    """Of a vector."""
+    return math.sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2])
 
 
 class ToolContact(Engine):
@@ -44,52 +61,64 @@ class ToolContact(Engine):
         self.touching = {}
         self.friction = self.work_done = self.dashpot_dissipated = 0.0
         self.impulse = np.zeros(3)
+        self.constants, self.geometry = (ContactReader(part, *names) for part, names in (
+            ("phys", Values._fields[:6]), ("geom", Values._fields[6:])))
 
     def connect(self):
         self.find_contacts()
-        self._store_shear(self._real())
+        self._store_shear(self._now())
 
     def find_contacts(self):
         """Find the contacts that the collider holds possible now."""
         self.collider = yade_engine(InsertionSortCollider)
         self.collided = self.collider.numAction
-        self.possible = []
+        found = []
         for piece, body in self.tool.body_of.items():
             for interaction in O.interactions.withBodyAll(body):
                 first = interaction.id1 == body
-                self.possible.append(Contact(interaction, piece, interaction.id2 if first else interaction.id1, first))
+                found.append(Contact(interaction, piece, interaction.id2 if first else interaction.id1, first))
+        self._keep(found)
 
     def forget_erased(self):
         """Sample contacts of erased bodies, which still look real, no more."""
-        self.possible = [contact for contact in self.possible if contact.piece in self.tool.body_of]
+        self._keep([contact for contact in self.possible if contact.piece in self.tool.body_of])
+
+    def _keep(self, contacts):
+        # What Python holds keeps its place in memory.
+        self.possible, self.places = contacts, [place(contact.interaction) for contact in contacts]
 
     def act(self):
         if self.collider.numAction != self.collided:
             self.find_contacts()
-        real = self._real()
-        if O.iter % self.sampling_period == 0:
-            self._sample_all(real)
-        if (O.iter + 1) % self.sampling_period == 0:
-            self._store_shear(real)
+        sampled, stored = O.iter % self.sampling_period == 0, (O.iter + 1) % self.sampling_period == 0
+        if sampled or stored:
+            now = self._now()
+            if sampled:
+                self._sample_all(now)
+            if stored:
+                self._store_shear(now)
 
-    def _real(self):
-        """Those of `possible` that are in contact now."""
-        return [contact for contact in self.possible if contact[0].isReal]
+    def _now(self):
+        """[(contact, Values)] of those of `possible` that are in contact now."""
+        return [(contact, self._values(where)) for contact, where in zip(self.possible, self.places)
+                if contact[0].isReal]
 
-    def _sample_all(self, real):
+    def _values(self, where):
+        """Values of the contact at this place in memory, which must be in contact now."""
+        constants, geometry = self.constants.of(where), self.geometry.of(where)
+        return Values(constants[:3], constants[3:6], constants[6:9], *constants[9:], geometry[:3], geometry[3:])
+
+    def _sample_all(self, now):
         elapsed = self.elapsed()
-        for contact in real:
-            self._sample(contact, elapsed)
+        for contact, values in now:
+            self._sample(contact, values, elapsed)
 
-    def _store_shear(self, real):
-        # YADE hands out its own vectors, which change with the next step.
-        self.shear_before = {(piece, rock): Vector3(interaction.phys.shearForce)
-                             for interaction, piece, rock, _ in real}
+    def _store_shear(self, now):
+        self.shear_before = {contact[1:3]: values.shear_force for contact, values in now}
 
-    def _sample(self, contact, elapsed):
+    def _sample(self, contact, now, elapsed):
         interaction, piece, rock, tool_first = contact
-        phys = interaction.phys
-        normal, shear = phys.normalForce, phys.shearForce
+        normal, shear = now.normal_force, now.shear_force
         # YADE puts N + S on the second body and its opposite on the first.
         sign = -elapsed if tool_first else elapsed
         x, y, z = (normal[0] + shear[0]) * sign, (normal[1] + shear[1]) * sign, (normal[2] + shear[2]) * sign
@@ -99,51 +128,53 @@ class ToolContact(Engine):
         vx, vy, vz = self.tool.velocity_at(piece, interaction, tool_first)
         self.work_done -= x * vx + y * vy + z * vz
         self.touching[piece, rock] = self.touching.get((piece, rock), 0.0) + elapsed
-        if phys.cn > 0:
-            dashpot = phys.normalViscous
-            gain = dashpot.dot(self.motion.of(rock)) * (0.5 if tool_first else -0.5)
-            self.dashpot_dissipated += (dashpot.squaredNorm() / phys.cn + gain) * elapsed
-        tangential = shear.norm()
-        if tangential > 0 and tangential >= SLIDING * phys.tangensOfFrictionAngle * normal.norm():
-            before, slip = self._slip(contact)
-            self._add_slip(contact, before, tangential, slip * elapsed / O.dt)
+        if now.cn > 0:
+            dashpot = now.viscous_force
+            gain = dot(dashpot, self.motion.of(rock)) * (0.5 if tool_first else -0.5)
+            self.dashpot_dissipated += (dot(dashpot, dashpot) / now.cn + gain) * elapsed
+        tangential = norm(shear)
+        if tangential > 0 and tangential >= SLIDING * now.friction * norm(normal):
+            before, slip = self._slip(contact, now)
+            self._add_slip(contact, now, before, tangential, slip * elapsed / O.dt)
 
-    def _add_slip(self, contact, before, after, slip):
+    def _add_slip(self, contact, now, before, after, slip):
         """Add a slip (m) under a tangential force (N) before and after the step to all sums."""
-        interaction, piece, rock, _ = contact
+        _, piece, rock, _ = contact
         force = 0.5 * (before + after)
         work = force * slip
         self.friction += work
         self.tool_work[piece] += work
         self.rock_work[rock] += work
         # A dashpot may pull; only compression presses the surfaces together.
-        pressing = max(interaction.phys.normalForce.dot(interaction.geom.normal), 0.0)
+        pressing = max(dot(now.normal_force, now.normal), 0.0)
         for (kind, exponent), summed in self.slid.items():
             summed[piece] += (pressing if kind == NORMAL else force)**exponent * slip
 
-    def _slip(self, contact):
+    def _slip(self, contact, now):
         """Tangential force (N) before this step, and the irreversible slip (m) in it."""
-        interaction, piece, rock, _ = contact
-        phys, geom = interaction.phys, interaction.geom
-        trial = geom.shearInc * -phys.ks
-        before = self.shear_before.get((piece, rock), Vector3.Zero)
-        size = before.norm()
+        ks, (nx, ny, nz) = now.ks, now.normal
+        x, y, z = (-ks * along for along in now.increment)
+        before = self.shear_before.get(contact[1:3], AT_REST)
+        size = norm(before)
         if size > 0:
             # YADE rotates the spring with the contact.
-            rotated = before - geom.normal * before.dot(geom.normal)
-            trial += rotated * (size / rotated.norm())
-        slip = max(trial.norm() - phys.shearForce.norm(), 0.0) / phys.ks
-        return size, slip - self._excess(interaction, slip) if slip > 0 else 0.0
+            along = dot(before, now.normal)
+            rotated = before[0] - nx * along, before[1] - ny * along, before[2] - nz * along
+            scale = size / norm(rotated)
+            x, y, z = x + rotated[0] * scale, y + rotated[1] * scale, z + rotated[2] * scale
+        slip = max(norm((x, y, z)) - norm(now.shear_force), 0.0) / ks
+        return size, slip - self._excess(contact.interaction, now, slip) if slip > 0 else 0.0
 
     @staticmethod
-    def _excess(interaction, slip):
+    def _excess(interaction, now, slip):
         """Excess (m) of YADE's slip over that of the surfaces at the contact point, over which forces work: YADE
         rotates spheres about their full radii and scales translations to match (kernels.stability)."""
-        geom, force = interaction.geom, interaction.phys.shearForce
-        size, length = force.norm(), geom.shearInc.norm()
+        force, increment = now.shear_force, now.increment
+        size, length = norm(force), norm(increment)
         if not size * length > 0:
             return 0.0
-        excess = force.dot(geom.incidentVel(interaction, False) * O.dt - geom.shearInc) / size
+        way = interaction.geom.incidentVel(interaction, False) * O.dt
+        excess = dot(force, (way[0] - increment[0], way[1] - increment[1], way[2] - increment[2])) / size
         # Part of the step's displacement may have gone into the spring.
         return excess * min(slip / length, 1.0)
 

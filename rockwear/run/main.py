@@ -16,6 +16,7 @@ import yade
 
 from rockwear import __version__, report
 from rockwear.run import checkpoint, lock, parameters, servers, vtk
+from rockwear.engines import base
 from rockwear.engines.base import RunEnded
 from rockwear.engines.history import write_table
 from rockwear.kernels.checks import ParameterError, require
@@ -310,7 +311,7 @@ class Run:
             "balances": {name: {"unit": unit, **{key: _plain(value) for key, value in balance.items()}}
                          for name, (balance, unit) in scene.output.balances().items()},
             "wall_time": {"unit": "s", "total": self.wall_before + time.time() - self.began, "set_up": self.setup_time,
-                          "loop": self.loop_time, "python_engines": python, "yade": self.loop_time - python,
+                          "loop": self.loop_time, "python_engines": python, "yade": base.yade_time,
                           "checkpoints": self.checkpoint_time, "by_engine": ours},
             # Of this process: a resumed run begins anew.
             "memory": {"unit": "bytes", "time": [time for time, _ in self.memory],

@@ -10,7 +10,7 @@ FOUND = {"overhead": 0.083, "step": 2e-3, "discs": 10, "bonds": 20, "steps": 30,
 
 def test_errors_are_relative_and_over_the_work_of_the_tool():
     text = "\n".join(steady_cost.table(FOUND))
-    assert "cost 8.3 % of YADE's own step of 2.00 ms" in text
+    assert "all Python costs 8.3 % of YADE's own step of 2.00 ms" in text
     assert "bonds 75 %, tool contact 25 %." in text
     assert "| friction work in the rock | +2.00 % | +0.20 % |" in text
     assert "| wear | -0.50 % | – |" in text

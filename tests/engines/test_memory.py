@@ -26,6 +26,12 @@ def test_contacts_are_those_of_python(found):
     assert True in real and False in real and found["contacts"]["normal_force"][0][0][0] != 0
 
 
+@pytest.mark.parametrize("what", ["contact of the tool", "motions"])
+def test_contacts_of_the_tool_and_motions_of_bodies_are_those_of_python(found, what):
+    for in_memory, in_python in found[what].values():
+        assert in_memory == in_python
+
+
 def test_the_check_leaves_vectors_as_they_are(found):
     assert found["as it is"] is None and found["by reference"] is None
     assert found["left"] == [0.6, 0.0, -0.8]

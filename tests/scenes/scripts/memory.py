@@ -9,9 +9,9 @@ from unittest import mock
 
 import numpy as np
 from yade import (
-    Bo1_Sphere_Aabb, CpmPhys, ForceResetter, FrictPhys, Ig2_Sphere_Sphere_ScGeom, InsertionSortCollider,
-    InteractionLoop, Ip2_FrictMat_FrictMat_FrictPhys, Law2_ScGeom_FrictPhys_CundallStrack, NewtonIntegrator, O, ScGeom,
-    Vector3, utils)
+    Bo1_Sphere_Aabb, CpmPhys, ForceResetter, FrictPhys, FrictViscoPhys, Ig2_Sphere_Sphere_ScGeom,
+    InsertionSortCollider, Interaction, InteractionLoop, Ip2_FrictMat_FrictMat_FrictPhys,
+    Law2_ScGeom_FrictPhys_CundallStrack, NewtonIntegrator, O, ScGeom, Vector3, utils)
 
 from rockwear.engines import cpm_bonds, memory
 from rockwear.kernels.bond_laws import Cohesive
@@ -104,17 +104,54 @@ def contacts_of_yade():
     places = memory.all_contacts()
     bodies = words[places + layout["bodies"]]
     pairs = np.column_stack([bodies & 0xffffffff, bodies >> 32]).tolist()
-    phys = words[places + layout["phys"]]
-    real = (phys != 0) & (words[places + layout["geom"]] != 0)
-    phys = memory.pointed(phys[real])
-    forces = {name: memory.MEMORY[phys[:, None] + layout[name] + np.arange(3)].tolist()
+    touching, phys, geom = memory.in_contact(places)
+    real = [k in touching for k in range(len(found))]
+    forces = {name: memory.MEMORY[phys + memory.contact_columns(name)].T.tolist()
               for name in ("normal_force", "shear_force")}
     there = [i.phys for i in found if i.isReal]
-    return {"bodies": (pairs, [[i.id1, i.id2] for i in found]), "real": (real.tolist(), [i.isReal for i in found]),
+    return {"bodies": (pairs, [[i.id1, i.id2] for i in found]), "real": (real, [i.isReal for i in found]),
+            "normal": (memory.MEMORY[geom + memory.contact_columns("normal")].T.tolist(),
+                       [list(i.geom.normal) for i in found if i.isReal]),
             "normal_force": (forces["normal_force"], [list(p.normalForce) for p in there]),
             "shear_force": (forces["shear_force"], [list(p.shearForce) for p in there]),
             "friction": (memory.MEMORY[phys + layout["friction"]].tolist(), [p.tangensOfFrictionAngle for p in there]),
             "class": (words[phys].tolist(), [memory.class_of(FrictPhys())] * len(there))}
+
+
+def contact_of_the_tool():
+    """{name: from memory, from Python} of all that is read of a contact with a dashpot."""
+    contact = Interaction(id1=1, id2=2)
+    contact.geom, contact.phys = ScGeom(), FrictViscoPhys(ks=2.5, cn=3.5, tangensOfFrictionAngle=4.5)
+    parts = {"phys": {**memory._FORCES, **memory._CONSTANTS}, "geom": memory._GEOMETRY}
+    vectors = [getattr(getattr(contact, part), attribute) for part, names in parts.items()
+               for name, attribute in names.items() if name not in memory._CONSTANTS]
+    for vector, values in zip(vectors, VALUES.T.tolist()):
+        write(vector, values)
+    found = {}
+    for part, names in parts.items():
+        together = iter(memory.ContactReader(part, *names).of(memory.place(contact)))
+        for name, attribute in names.items():
+            value = getattr(getattr(contact, part), attribute)
+            found[name] = ([next(together) for _ in range(1 if name in memory._CONSTANTS else 3)],
+                           [value] if name in memory._CONSTANTS else list(value))
+    return found
+
+
+def motions():
+    """{name: from memory, from Python} of bodies, and as Python has them after they were written."""
+    O.reset()
+    for (x, y, z), velocity, spin in zip(VALUES.T.tolist(), -VALUES.T, 2 * VALUES.T):
+        body = O.bodies[O.bodies.append(utils.sphere((x, y, z), 1.0))]
+        body.state.vel, body.state.angVel = velocity.tolist(), spin.tolist()
+    bodies = [5, 0, 3]
+    found, states = memory.Motions(bodies), [O.bodies[n].state for n in bodies]
+    read = {name: found.read(name).T.tolist() for name in ("in_plane", "moving", "turning", "velocity", "spin")}
+    pairs = {"in_plane": [list(s.pos)[:2] for s in states], "moving": [list(s.vel)[:2] for s in states],
+             "turning": [[s.angVel[2]] for s in states], "velocity": [list(s.vel) for s in states],
+             "spin": [list(s.angVel) for s in states]}
+    found.write("moving", np.array([2, 1]), [[7.0, 8.0], [9.0, 10.0]])
+    return {**{name: (read[name], python) for name, python in pairs.items()},
+            "written": ([list(O.bodies[n].state.vel)[:2] for n in (3, 0)], [[7.0, 9.0], [8.0, 10.0]])}
 
 
 def refused(**constants):
@@ -145,7 +182,7 @@ def left_as_it_was():
 
 checks = {
     "wrong": read_and_written(), "wrong together": together(), "behind": behind(), "left": left_as_it_was(),
-    "contacts": contacts_of_yade(),
+    "contacts": contacts_of_yade(), "contact of the tool": contact_of_the_tool(), "motions": motions(),
     "as it is": refused(INSTANCE=memory.INSTANCE),
     "other layouts": [refused(INSTANCE=i, HOLDER=h) for i in (24, 32, 40, 48) for h in (0, 8, 16, 24)
                       if (i, h) != (40, 16)],
