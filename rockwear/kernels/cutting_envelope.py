@@ -44,11 +44,14 @@ class Range(NamedTuple):
     case: str
 
     def verdict(self, value, standard_error=0.0):
-        """"inside", "below", "above" or "not known"; with ", within the error" if the limit is within twice that."""
+        """"inside", "below", "above" or "not known"; with ", within the error" if the limit is within twice that; "not
+        told" of a side on which the value is by less."""
         if math.isnan(value):
             return "not known"
         if self.low <= value <= self.high:
-            return "inside"
+            margin = min(value - self.low, self.high - value)
+            half_line = math.isinf(self.high - self.low)
+            return "not told" if half_line and margin < 2 * standard_error else "inside"
         missed = max(self.low - value, value - self.high)
         side = "below" if value < self.low else "above"
         return f"{side}, within the error" if missed <= 2 * standard_error else side

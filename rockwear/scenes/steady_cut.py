@@ -14,7 +14,8 @@ from rockwear.kernels.groove import groove_results
 from rockwear.kernels.parameter import Group, Parameter, Presets, above_zero, choice, number, zero_or
 from rockwear.kernels.polygon import reach
 from rockwear.kernels.rigid_motion import Straight
-from rockwear.kernels.steady_record import CELL, steady_results, uncertainty, with_error
+from rockwear.kernels.steady_record import (
+    CELL, ENOUGH_CHIPS, LONG_ENOUGH, steady_results, uncertainty, with_error)
 from rockwear.model.rock_mass import SLABS, RockMass
 from rockwear.scenes import parameters, parts
 from rockwear.scenes.cut import Cut
@@ -201,8 +202,16 @@ class SteadyCut(Programme):
         return {**found, **self.window.results()}
 
     def warnings(self):
-        found, columns = self.window.warnings(self.scene.bonds.cracks), self.scene.recorder.columns()
-        known = uncertainty(self._forces(columns)) if self.accuracy and columns else 0.0
+        cracks, columns = self.scene.bonds.cracks, self.scene.recorder.columns()
+        found = self.window.warnings(cracks)
+        if not cracks:
+            found.append("no bond broke: the tool was pressed into the rock, and cut nothing")
+        forces = self._forces(columns) if columns else {}
+        if forces and not forces["long_enough"][0]:
+            found.append(f"means are of {forces['steady_length'][0] / self.scene.depth_of_cut:.1f} depths of cut and "
+                         f"{forces['peaks'][0]} chips after the transient: a cut_length for {LONG_ENOUGH} and "
+                         f"{ENOUGH_CHIPS} tells their errors")
+        known = uncertainty(forces) if self.accuracy and forces else 0.0
         if known > self.accuracy:
             far = f"to {100 * known:.0f} %" if known < math.inf else "not at all"
             found.append(f"the mean cutting force is known {far}, and was to be to {100 * self.accuracy:g} %: a longer "

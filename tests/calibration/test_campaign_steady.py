@@ -103,6 +103,7 @@ def test_what_cuts_tell_together():
     def row(force, error, thrust=40.0):
         return {"force": Measured(force, error), "pressed": Measured(thrust, 3.0), "ucs": Measured(50.0, 2.0)}
     found = {"base": row(90.0, 4.0), "wear flat 2 mm": row(40.0, math.nan, 70.0), "eight discs": row(40.0, 4.0),
+             "eight discs, velocity 4 m/s": row(40.0, 4.0),
              **{f"eight discs, {name}": one for name, one in {
                  "depth 1.2 mm": row(40.0 * 0.25**0.8, 2.0), "depth 0.31 mm": row(40.0 * 0.25**1.8, 1.0),
                  "rake 15°": row(40.0 - 0.6 * 20, 4.0),
@@ -151,12 +152,12 @@ def test_a_cut_of_another_size_is_of_a_rock_that_is_crushed_in_its_own_discs():
 
 def test_settings_are_compared_with_eight_discs_over_what_they_cost():
     row = {"force": Measured(40.0, 4.0), "friction": Measured(4.0, math.nan), "cost": 20.0}
-    found = {"eight discs": row, "eight discs, velocity 2 m/s": {**row, "force": Measured(30.0, 2.0), "cost": 40.0},
+    found = {"eight discs": row, "eight discs, velocity 4 m/s": {**row, "force": Measured(30.0, 2.0), "cost": 40.0},
              "eight discs, rake 15°": row}
     energy, friction = steady_cut.price(found).axes
     points = [tuple(line.get_xydata()[0]) for line in energy.lines if line.get_marker() == "o"]
     assert points == [(20.0, 1.0), (40.0, 0.75)]
-    assert [words.get_text() for words in energy.get_legend().get_texts()] == ["eight discs", "velocity 2 m/s"]
+    assert [words.get_text() for words in energy.get_legend().get_texts()] == ["eight discs", "velocity 4 m/s"]
 
 
 def write(folder, results, **entries):

@@ -1,4 +1,5 @@
 """The steady cut: a window that moves along, with closed balances, bit-equal restarts and rock at rest left at rest."""
+import math
 import signal
 
 import numpy as np
@@ -11,7 +12,7 @@ from tests.running import (
 SCRIPT = ROOT / "yade_scripts/steady_cut.py"
 SMALL = dict(rock="", discs_per_depth=0, window_behind=0.016, window_ahead=0.048, window_height=0.026, radius_min=0.8e-3, radius_max=1.2e-3,
              tool_radius_min=4e-4, tool_radius_max=5e-4, tooth_height=0.015, tooth_width=0.01, velocity=5.0,
-             tool_kn=2e10, tool_kt=2e10, contact_damping=0.2, ramp_length=2e-3, cut_length=0.02, report="false")
+             tool_kn=2e10, tool_kt=2e10, contact_damping=0.2, ramp_length=2e-3, cut_length=0.02, time_step_fraction=0.8, report="false")
 """A steady cut in miniature."""
 LAWS = {"brittle": dict(seed=2),
         "softening": dict(bond_law="cohesive", kt=8e9, rotation="blocked", mu=0.3, weibull_modulus=4, heat="true",
@@ -134,3 +135,21 @@ def test_rock_at_rest_stays_at_rest_while_the_window_moves_on(law, tmp_path):
 def test_a_cut_that_has_no_room_is_refused(values, words, tmp_path):
     (code, said), = refusals(SCRIPT, tmp_path, [[*arguments({**SMALL, **values}), "--out", tmp_path / "out"]])
     assert_refused(code, said, words)
+
+
+@pytest.mark.parametrize("values, said", [
+    # Rock without cohesion flows about the tool; rock that nothing breaks gives way as its springs do.
+    (dict(bond_law="cohesive", kt=8e9, bond_tension=1e3, bond_cohesion=1e3, bond_fracture_energy=0.01), "means are of"),
+    (dict(Rn=1e12, Rt=1e12), "no bond broke: the tool was pressed into the rock, and cut nothing"),
+    (dict(rake=-20, wear_flat=3e-3, tooth_width=0.02), "means are of")])
+def test_rock_too_weak_or_too_strong_and_a_worn_tool_end_well(values, said, tmp_path):
+    run = steady_cut(tmp_path / "out", cut_length=0.006, **values)
+    assert run.code == 0 and run.summary["ended"] == "finished", run.stderr
+    assert said in run.stderr and "Traceback" not in run.stderr
+    assert math.isfinite(value(run, "peak_cutting_force")) and not value(run, "long_enough")
+
+
+def test_a_tooth_that_a_wear_flat_leaves_no_room_for_is_refused(tmp_path):
+    (code, said), = refusals(SCRIPT, tmp_path, [[*arguments({**SMALL, "rake": -20, "wear_flat": 8e-3}), "--out",
+                                                 tmp_path / "out"]])
+    assert_refused(code, said, "tooth_width = 0.01 m")
