@@ -44,10 +44,10 @@ setup-sweep: setup ## what many runs at once need too: fits, campaigns and sweep
 setup-test: setup
 	$(call install,$(TO_TEST),pytest xdist distributed)
 
-# Wear is accelerated so that the tip wears away within a cut of 20 mm instead of kilometres.
+# Wear is accelerated so that the tip wears away within a cut of 44 mm instead of tens of metres.
 run: setup ## cut a sandstone steadily, the tip wearing; report in out/steady_cut/report.html
-	yade -n -x -j1 yade_scripts/steady_cut.py --rock crushing_sandstone --discs_per_depth 16 \
-	  --cut_length 0.02 --velocity 8 --heat true --wear_acceleration 5e3 --out $(OUT)/steady_cut
+	yade -n -x -j1 yade_scripts/steady_cut.py --depth_of_cut 2e-3 --tip_radius 2e-4 --cut_length 0.044 --velocity 8 \
+	  --heat true --wear_acceleration 300 --out $(OUT)/steady_cut
 
 test: setup-test ## all tests
 	$(PYTHON) -m pytest -n 2 --dist loadscope tests

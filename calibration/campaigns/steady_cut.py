@@ -45,7 +45,7 @@ SHORT = 0.03
 SLOWER = dict(velocity=4.0, snapshot_period=1e-3)
 """Half as fast, with as many pictures over the way."""
 DEPTHS = 0.3125e-3, 1.25e-3, 0.02
-"""m of other cuts, half as fast, all lengths of which follow their depth: four and sixteen times less, and four more."""
+"""m of other cuts, half as fast, all lengths of which follow their depth: 16 and 4 times less, and 4 times more."""
 BOX = dict(width=0.02, height=0.01)
 """Of the laboratory, m; loaded along its length; as much larger or smaller as the discs are."""
 SPEEDS = {"compression": 0.04, "tension": 0.02}

@@ -10,9 +10,10 @@ from tests.running import (
     interrupt_script, refusals, run_script, value)
 
 SCRIPT = ROOT / "yade_scripts/steady_cut.py"
-SMALL = dict(rock="", discs_per_depth=0, window_behind=0.016, window_ahead=0.048, window_height=0.026, radius_min=0.8e-3, radius_max=1.2e-3,
-             tool_radius_min=4e-4, tool_radius_max=5e-4, tooth_height=0.015, tooth_width=0.01, velocity=5.0,
-             tool_kn=2e10, tool_kt=2e10, contact_damping=0.2, ramp_length=2e-3, cut_length=0.02, time_step_fraction=0.8, report="false")
+SMALL = dict(rock="", discs_per_depth=0, window_behind=0.016, window_ahead=0.048, window_height=0.026,
+             radius_min=0.8e-3, radius_max=1.2e-3, tool_radius_min=4e-4, tool_radius_max=5e-4, tooth_height=0.015,
+             tooth_width=0.01, velocity=5.0, tool_kn=2e10, tool_kt=2e10, contact_damping=0.2, ramp_length=2e-3,
+             cut_length=0.02, time_step_fraction=0.8, report="false")
 """A steady cut in miniature."""
 LAWS = {"brittle": dict(seed=2),
         "softening": dict(bond_law="cohesive", kt=8e9, rotation="blocked", mu=0.3, weibull_modulus=4, heat="true",
