@@ -320,7 +320,8 @@ def envelope(folder, found):
 def relations(found):
     """Rows of a table: what several cuts tell together, against RELATIONS."""
     ours, rows = {}, []
-    forces = {depth_of(case): found[case]["force"] for case in AT_DEPTHS if case in found}
+    forces = {depth_of(case): found[case]["force"] for case in AT_DEPTHS
+              if case in found and math.isfinite(found[case]["force"].standard_error)}
     for name, part in {"scratch_force_exponent": lambda depth: depth < 2e-3,
                        "chip_force_exponent": lambda depth: depth > 1e-3}.items():
         if sum(map(part, forces)) > 1:

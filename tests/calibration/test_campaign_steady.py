@@ -121,6 +121,9 @@ def test_what_cuts_tell_together():
     assert rows["eight discs, wear flat 1 mm", "thrust that a wear flat of 1 or 2 mm adds"] == ("0.8 ± 0.085", "inside")
     assert rows["eight discs, wear flat 1 mm", "cutting force that a wear flat adds"] == ("0.5 ± 0.15", "inside")
     assert not steady_cut.relations({"eight discs, depth 20 mm": row(80.0, 8.0)})
+    found["eight discs, depth 20 mm"] = row(500.0, math.nan)
+    assert {case: ours for case, words, _, _, ours, _ in steady_cut.relations(found) if "20 mm" in words} == {
+        "eight discs": "0.8 ± 0.13"}
 
 
 def test_the_figure_over_the_discs_has_what_is_there():
