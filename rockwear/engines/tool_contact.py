@@ -18,7 +18,8 @@ the piece is the interaction's first body."""
 Values = namedtuple("Values", "normal_force shear_force viscous_force friction ks cn normal increment")
 """What YADE has of a contact now: forces (N), its friction, stiffness (N/m) and damping (N s/m), the normal and the
 shear increment (m) of the step; vectors are tuples."""
-AT_REST = (0.0, 0.0, 0.0)
+NO_FORCE = (0.0, 0.0, 0.0)
+"""N, in a contact that has just been made."""
 
 
 def dot(a, b):
@@ -154,7 +155,7 @@ class ToolContact(Engine):
         """Tangential force (N) before this step, and the irreversible slip (m) in it."""
         ks, (nx, ny, nz) = now.ks, now.normal
         x, y, z = (-ks * along for along in now.increment)
-        before = self.shear_before.get(contact[1:3], AT_REST)
+        before = self.shear_before.get(contact[1:3], NO_FORCE)
         size = norm(before)
         if size > 0:
             # YADE rotates the spring with the contact.
