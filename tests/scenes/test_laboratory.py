@@ -27,6 +27,11 @@ def compressed(tmp_path_factory):
     return laboratory(tmp_path_factory.mktemp("compressed") / "out", report="true", speed=0.05)
 
 
+@pytest.fixture(scope="module")
+def pulled(tmp_path_factory):
+    return laboratory(tmp_path_factory.mktemp("pulled") / "out", test="tension")
+
+
 @pytest.mark.parametrize("test", ["compression", "tension"])
 @pytest.mark.parametrize("kt", [20e9, 4e9])
 def test_a_triangular_lattice_has_its_exact_moduli(tmp_path, test, kt):
@@ -72,8 +77,7 @@ def test_the_end_leaves_figures_and_balances(compressed):
     assert abs(columns["unbalanced_stress [Pa]"][loading]).max() < 0.02 * stress.max()
 
 
-def test_the_rock_is_weaker_in_tension_and_as_stiff(compressed, tmp_path):
-    pulled = laboratory(tmp_path / "out", test="tension")
+def test_the_rock_is_weaker_in_tension_and_as_stiff(compressed, pulled):
     assert value(pulled, "failed")
     assert value(pulled, "tensile_strength") == value(pulled, "peak_stress")
     assert "tensile_strength" not in compressed.summary["results"]
@@ -93,6 +97,43 @@ def test_discs_that_cannot_turn_make_the_rock_stiffer(compressed, tmp_path):
 def test_softening_bonds_make_the_rock_stronger(tmp_path, law, softer):
     steep, gentle = (laboratory(tmp_path / f"{H:g}", test="tension", bond_law=law, H=H) for H in (1e12, softer))
     assert value(gentle, "peak_stress") > 1.05 * value(steep, "peak_stress")
+
+
+def test_a_rock_without_shear_strength_has_no_tensile_strength(pulled, tmp_path):
+    """Shear strength of 1 N per metre, a hundred thousandth of that in tension: bonds across the load let go."""
+    loose = laboratory(tmp_path / "out", test="tension", Rt=1.0)
+    assert loose.code == 0 and value(loose, "failed"), loose.stderr
+    assert 0 < value(loose, "peak_stress") < 1e-3 * value(pulled, "peak_stress")
+    assert value(loose, "tensile_cracks") == 0 and value(loose, "shear_cracks") > 100
+    balance = loose.summary["balances"]["energy"]
+    assert abs(balance["residual"]) < 0.05 * balance["platen_work"]
+
+
+def test_one_law_from_a_steep_to_a_flat_softening(pulled, tmp_path):
+    """Damage: with H to infinity the brittle rock, to the last digit; with H to 0 one that yields and never fails."""
+    steep = laboratory(tmp_path / "steep", test="tension", bond_law="damage", H=1e16)
+    for name in ("peak_stress", "peak_strain", "youngs_modulus", "poissons_ratio", "tensile_cracks", "shear_cracks"):
+        assert value(steep, name) == pytest.approx(value(pulled, name), rel=1e-9), name
+    flat = laboratory(tmp_path / "flat", test="tension", bond_law="damage", H=1e4, strain_max=4e-3, speed=0.1,
+                      record_strain=2e-5)
+    assert flat.summary["ended"] == "finished" and not value(flat, "failed")
+    assert value(flat, "tensile_cracks") == value(flat, "shear_cracks") == 0
+    assert value(flat, "youngs_modulus") == pytest.approx(value(pulled, "youngs_modulus"), rel=0.02)
+    columns = history(flat.out)
+    stress, strain = columns["stress [Pa]"], columns["platen_strain [-]"]
+    # At its end it yields: stress stays the same, above the brittle strength.
+    late = stress[strain > 0.8 * strain[-1]]
+    assert late.min() > 0.95 * late.max() > 0.95 * 1.3 * value(pulled, "peak_stress")
+
+
+def test_grains_of_a_disc_each_change_nothing(pulled, tmp_path):
+    count = len(np.load(pulled.out / "model.npz")["rock_positions"])
+    edge = math.sqrt(SMALL["width"] * SMALL["height"] / count / (1.5 * math.sqrt(3)))
+    fine = laboratory(tmp_path / "out", test="tension", grain_edge=repr(edge * (1 + 1e-9)))
+    assert fine.code == 0, fine.stderr
+    assert len(set(np.load(fine.out / "model.npz")["grains"])) == count
+    for name in ("peak_stress", "youngs_modulus", "poissons_ratio", "tensile_cracks", "shear_cracks"):
+        assert value(fine, name) == pytest.approx(value(pulled, name), rel=1e-9), name
 
 
 def test_stopped_and_resumed_equals_never_stopped(compressed, tmp_path):

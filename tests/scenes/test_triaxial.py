@@ -75,6 +75,19 @@ def test_confinement_makes_the_rock_stronger_and_no_stiffer(broken, tmp_path):
     assert value(broken, "residual_stress") > 20e6
 
 
+def test_a_confinement_above_the_strength_is_held(broken, tmp_path):
+    """100 MPa, more than the rock bears unconfined (some 80 MPa): it still carries by friction, and more than before.
+    """
+    pressed = confined(tmp_path / "out", confinement=100e6, strain_max=0.01, record_strain=5e-5)
+    assert pressed.code == 0, pressed.stderr
+    deviatoric, before = (value(run, "peak_stress") - pressure for run, pressure in ((pressed, 100e6), (broken, 20e6)))
+    assert deviatoric > before + 0.3 * 80e6
+    assert value(pressed, "confinement_held") == pytest.approx(100e6, rel=0.01)
+    assert value(pressed, "youngs_modulus") == pytest.approx(value(broken, "youngs_modulus"), rel=0.03)
+    balance = pressed.summary["balances"]["energy"]
+    assert abs(balance["residual"]) < 0.02 * balance["platen_work"]
+
+
 def test_without_confinement_it_is_the_uniaxial_test(tmp_path):
     free = confined(tmp_path / "free", confinement=0)
     uniaxial = run_script(ROOT / "yade_scripts/uniaxial.py", *arguments({**SMALL, "speed": 0.1}), "--out",
