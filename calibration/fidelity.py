@@ -146,20 +146,23 @@ def lines(rows, ours):
 
 
 def entered(ours, given):
-    """The own results with a mean over finished runs, which replaces an earlier one of the same row, `set` and run."""
+    """The own results with a mean over finished runs, which replaces an earlier one of the same row and `set`; the row
+    is open no more."""
+    name = ", ".join(filter(None, (given.enter, given.set)))
     runs = [RunFolder(folder) for folder in given.folders]
     values = np.array([run.result(given.result) for run in runs])
     require(np.isfinite(values).all(), "result", given.result, "a finite number in each summary.json")
     seconds = sum(run.summary["wall_time"]["total"] for run in runs)
-    result = {"row": given.enter, "run": given.enter, "value": float(values.mean()), "packings": len(values)}
+    result = {"row": given.enter, "run": name, "value": float(values.mean()), "packings": len(values)}
     if len(values) > 1:
         result["error"] = float(values.std(ddof=1) / math.sqrt(len(values)))
     if given.set:
         result["set"] = given.set
-    kept = [old for old in ours["results"] if (old["row"], old["run"]) != (given.enter, given.enter)]
+    kept = [old for old in ours["results"] if old["run"] != name]
+    still = {row: why for row, why in ours["open"].items() if row != given.enter}
     run = {"command": given.command, "commit": given.commit, "date": generated.ORIGIN["date"],
            "wall": f"{seconds / 60:.0f} min"}
-    return {**ours, "runs": {**ours["runs"], given.enter: run}, "results": [*kept, result]}
+    return {**ours, "runs": {**ours["runs"], name: run}, "results": [*kept, result], "open": still}
 
 
 def main(words):

@@ -102,6 +102,12 @@ def test_a_result_of_finished_runs_is_entered_with_its_standard_error(tmp_path, 
     assert own["results"] == [{"row": "m-13.3-depth", "run": "m-13.3-depth", "value": pytest.approx(0.25e-3),
                                "packings": 2, "error": pytest.approx(0.05e-3)}]
     assert own["runs"]["m-13.3-depth"]["wall"] == "3 min"
+    # With other settings it stands beside it, and what was open is open no more.
+    file.write_text(json.dumps({**own, "open": {"m-13.3-depth": "not run", "m-2.1-ductility": "not run"}}))
+    assert fidelity.main([*words, "--command", "cut", "--set", "Rn 500"]) == 0
+    both = json.loads(file.read_text())
+    assert [(one["run"], one.get("set")) for one in both["results"]] == [
+        ("m-13.3-depth", None), ("m-13.3-depth, Rn 500", "Rn 500")] and list(both["open"]) == ["m-2.1-ductility"]
     before = file.read_text()
     assert fidelity.main(words) == 2 and file.read_text() == before
 
