@@ -100,7 +100,7 @@ def test_softening_bonds_make_the_rock_stronger(tmp_path, law, softer):
 
 
 def test_a_rock_without_shear_strength_has_no_tensile_strength(pulled, tmp_path):
-    """Shear strength of 1 N per metre, a hundred thousandth of that in tension: bonds across the load let go."""
+    """Shear strength of 1 N per metre, a hundred thousandth of that in tension: bonds across the load part."""
     loose = laboratory(tmp_path / "out", test="tension", Rt=1.0)
     assert loose.code == 0 and value(loose, "failed"), loose.stderr
     assert 0 < value(loose, "peak_stress") < 1e-3 * value(pulled, "peak_stress")
