@@ -52,7 +52,6 @@ SPEEDS = {"compression": 0.04, "tension": 0.02}
 """Of each platen, m/s."""
 
 
-
 def at_depth(depth):
     """Parameters of a cut that is as CUT, but for its size. depth: m."""
     size = depth / CUT["depth_of_cut"]

@@ -41,8 +41,7 @@ class OfTheCut(Presets):
 WINDOW = Group("rock", (
     Parameter("discs_per_depth", 0.0, "", zero_or(4, 64), "rock discs in the depth of cut, 16 for a result: gives the "
               "radii of rock and tool, window, grading, tooth, ramp_length and record_period; 0: they are given",
-              "ours",
-              presets=OfTheCut()),
+              "ours", presets=OfTheCut()),
     Parameter("window_behind", 0.03, "m", above_zero, "length of the window behind the tip"),
     Parameter("window_ahead", 0.06, "m", above_zero, "length of the window ahead of the tip"),
     Parameter("window_height", 0.04, "m", above_zero, "height of the window"),

@@ -107,3 +107,8 @@ def test_no_exponent(depth, force, name):
 def test_what_is_no_cut_is_refused(changed, name):
     with pytest.raises(ParameterError, match=f"^{name} ="):
         ranges(RECALLED, **changed)
+
+
+def test_a_sign_is_told_where_twice_the_error_leaves_it():
+    falls = next(one for one in RELATIONS if one.observable == "force_over_rake")
+    assert [falls.verdict(-10.0, error) for error in (4.0, 6.0)] == ["inside", "not told"]
