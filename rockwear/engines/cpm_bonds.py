@@ -4,9 +4,10 @@ from collections import namedtuple
 from functools import cache
 
 import numpy as np
-from yade import CpmPhys, O, ScGeom
+from yade import CpmPhys, Ig2_Sphere_Sphere_ScGeom, O, ScGeom
 
 from rockwear.engines import crushing
+from rockwear.engines.access import geometry_functor
 from rockwear.engines.bond_log import BROKEN, INTACT, SEPARATED, BondLog, Crack
 from rockwear.engines.memory import MARKS, MEMORY, TRIED, Places, check, offset, place, require_memory
 from rockwear.kernels.bond_laws.cohesive import UNBREAKABLE, softening_energy
@@ -41,7 +42,8 @@ _VECTORS = {"normal": lambda contact: contact.geom.normal, "increment": lambda c
 """Vectors of a bond that looks read, and partly write, for many bonds at once."""
 _GROUPS = {"slip": ("slipped", "shear_force"), "looked_at": ("slipped", "omega", "crushed"),
            "limits": ("onset", "fracture"), "damage": ("omega", "kappa"),
-           "forces": ("normal", "normal_force", "shear_force"), **crushing.GROUPS}
+           "forces": ("normal", "normal_force", "shear_force"), "moved": ("increment", "radius1", "radius2", "overlap"),
+           **crushing.GROUPS}
 """What is read together."""
 SLIPPED, SHEAR, OMEGA, CRUSHED = slice(0, 3), slice(3, 6), 3, 4
 """Rows of the groups "slip" and "looked_at"."""
@@ -63,6 +65,16 @@ def _behind_slip():
     MEMORY[place(slipped[0]) + found["kappa"] + 1] = MARKS[0]
     require_memory(tried[0].epsNPl == MARKS[0], "epsNPl")
     return {**found, "crushed": found["kappa"] + 1}
+
+
+@cache
+def _behind_normal():
+    """{name: how far} behind the normal YADE keeps the radii and the overlap (m) of a contact. Raises
+    ParameterError."""
+    tried = [ScGeom(refR1=1.1 + k, refR2=2.3 + k, penetrationDepth=0.123 + k) for k in range(TRIED)]
+    normals = [geom.normal for geom in tried]
+    return {name: offset(name, normals, [getattr(geom, of) for geom in tried])
+            for name, of in {"radius1": "refR1", "radius2": "refR2", "overlap": "penetrationDepth"}.items()}
 
 
 def _dot(a, b):
@@ -168,7 +180,8 @@ class CpmBonds(BondLog):
         # Lengths (m) of the bonds that are there.
         self.contacts, self.lengths, self.strains = {}, np.zeros(count), None
         self.places = Places(count, vectors=_VECTORS, groups=_GROUPS,
-                             numbers={name: ("slipped", behind) for name, behind in _behind_slip().items()})
+                             numbers={name: ("slipped", behind) for name, behind in _behind_slip().items()}
+                             | {name: ("normal", behind) for name, behind in _behind_normal().items()})
         self.there = _Kept(self.places, "looked_at", lambda: np.flatnonzero(self.status != SEPARATED))
         self.slipping = _Kept(self.places, "slip", lambda: np.flatnonzero(self.active & (self.status != SEPARATED)))
         self.crushing = crushing.Crushing(laws=self.laws, hardening=self.law.hardening, places=self.places)
@@ -196,6 +209,7 @@ class CpmBonds(BondLog):
     def connect(self):
         """Find the interactions of the scene that is in O now, and give them the strains of a restart."""
         self.contacts = {}
+        self.shear_by_radii = geometry_functor(Ig2_Sphere_Sphere_ScGeom).avoidGranularRatcheting
         self._follow(np.flatnonzero(self.status != SEPARATED))
         if self.strains is not None:
             numbers, omegas, strains, slipped, crushed = self.strains
@@ -261,9 +275,15 @@ class CpmBonds(BondLog):
         if not len(slid):
             return
         numbers, force, force_before = numbers[slid], now[SHEAR, slid], before[SHEAR, slid]
-        work = -_dot(force + force_before, self.places.read("increment", numbers))
+        work = -_dot(force + force_before, self._moved(numbers))
         stored = (_dot(force, force) - _dot(force_before, force_before)) / self.kt[numbers]
         self._dissipate(numbers, 0.5 * self.between_samples * (work - stored), True)
+
+    def _moved(self, numbers):
+        """(3, k) m, how far the forces of bonds moved tangentially in the last step: YADE's increment, without the
+        factor, radii over distance, that it gives translations (kernels.stability). A fine bond opens by its radii."""
+        increment, (first, second, overlap) = np.split(self.places.read("moved", numbers), 2)
+        return increment * (1.0 - overlap / (first + second)) if self.shear_by_radii else increment
 
     def look_at_all(self):
         """Bring damage and status of all bonds up to date."""

@@ -114,6 +114,13 @@ def test_energy_of_a_free_pair_that_flies_apart(checks):
     assert checks["flying, damaged by slip"]["residual"] < 5e-3
 
 
+def test_the_work_of_slip_of_a_bond_that_is_wide_open(checks):
+    """YADE's increment of shear is smaller than the way over which the force works: by the radii over the distance."""
+    for period, error in (("1", 1e-4), ("10", 1e-2)):
+        found = checks["wide open"][period]
+        assert found["status"] == 1 and abs(found["residual"]) < error < 0.1 < found["by increments"]
+
+
 def test_a_stronger_bond_is_the_same_bond_larger(checks):
     assert max(checks["scaled"].values()) < 1e-12
 
