@@ -13,7 +13,7 @@ from scipy.ndimage import gaussian_filter1d
 from scipy.optimize import brentq
 from scipy.spatial import cKDTree
 
-from rockwear.kernels.polygon import area
+from rockwear.kernels.polygon import area, cross
 from rockwear.model.facet_tool import FacetTool
 from rockwear.model.materials import STEEL
 from rockwear.model.particle_tool import Tool
@@ -187,10 +187,11 @@ class Pattern:
     def entered(self, boundary):
         """(n,) segment that each normal enters first, and (n,) depth (m) of the intersection."""
         begin, end = (boundary.vertices[boundary.facets[:, k]] for k in (0, 1))
-        across = np.cross(self.inward[:, None], (end - begin)[None])
+        inward, legs = self.inward[:, None], (end - begin)[None]
+        across = cross(inward, legs)
         across[abs(across) < 1e-12] = np.nan
         away = begin[None] - self.points[:, None]
-        depth, place = np.cross(away, (end - begin)[None]) / across, np.cross(away, self.inward[:, None]) / across
+        depth, place = cross(away, legs) / across, cross(away, inward) / across
         depth[~((place >= 0) & (place <= 1) & (depth > -STRIP))] = np.inf
         first = np.argmin(depth, axis=1)
         return first, depth[np.arange(len(first)), first]

@@ -5,6 +5,7 @@ import concurrent.futures
 import importlib.util
 import logging
 import os
+import pickle
 import signal
 import subprocess
 import sys
@@ -94,6 +95,22 @@ class Started:
         return RunFolder(self.folder)
 
 
+class ByValue:
+    """A function of yade_job that arrives as itself where our package is not: on workers, and since dask 2025 on the
+    scheduler, too."""
+
+    def __init__(self, function):
+        import cloudpickle
+        cloudpickle.register_pickle_by_value(yade_job)
+        self.function, self.pickled = function, cloudpickle.dumps(function)
+
+    def __call__(self, *arguments):
+        return self.function(*arguments)
+
+    def __reduce__(self):
+        return pickle.loads, (self.pickled,)
+
+
 class Runs:
     """Runs in subfolders of `folder`, `at_once` at a time on this machine, or as many as the workers of `scheduler` (an
     address) take.
@@ -138,9 +155,7 @@ class Runs:
         for old in ("summary.json", *([] if self.keep else ["checkpoint/current.json"])):
             # A worker tells by these what was done since.
             (Path(one["folder"]) / old).unlink(missing_ok=True)
-        import cloudpickle
-        cloudpickle.register_pickle_by_value(yade_job)
-        self.futures.append(self.client.submit(yade_job.run_on_worker, one, pure=False))
+        self.futures.append(self.client.submit(ByValue(yade_job.run_on_worker), one, pure=False))
         return Started(one["folder"], self.futures[-1], one["log"])
 
     def _connect(self):

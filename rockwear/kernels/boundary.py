@@ -13,7 +13,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import Delaunay, cKDTree
 
 from rockwear.kernels.checks import positive, require
-from rockwear.kernels.polygon import check_polygon, inside, nearest_on_edges, signed_distance
+from rockwear.kernels.polygon import check_polygon, cross as cross_in_plane, inside, nearest_on_edges, signed_distance
 
 PAIRS = 1_000_000
 """Most pairs of points and triangles processed together in `distance`: some 500 MB of temporaries if all are near."""
@@ -132,13 +132,9 @@ def _meeting(vertices, facets):
     apart = (facets[i][:, :, None] != facets[j][:, None, :]).all(axis=(1, 2))
     i, j = i[apart], j[apart]
     gap = vertices[facets[j, 0]] - vertices[facets[i, 0]]
-
-    def cross(a, b):
-        return a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
-
-    det = cross(along[i], along[j])
+    det = cross_in_plane(along[i], along[j])
     with np.errstate(divide="ignore", invalid="ignore"):
-        s, t = cross(gap, along[j]) / det, cross(gap, along[i]) / det
+        s, t = cross_in_plane(gap, along[j]) / det, cross_in_plane(gap, along[i]) / det
         meet = (s >= 0) & (s <= 1) & (t >= 0) & (t <= 1)
     return np.column_stack([facets[i], facets[j]])[meet]
 

@@ -17,7 +17,8 @@ MAX_VERTICES = 4000  # of a file: the test for simple polygons compares all pair
 CHUNK = 2_000_000  # point-edge pairs processed together: some 100 MB of temporaries
 
 
-def _cross(a, b):
+def cross(a, b):
+    """(...) vector products of vectors (..., 2) in the plane."""
     return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
 
 
@@ -25,7 +26,7 @@ def signed_area(polygon):
     """Area (m2) by the shoelace formula, ½ Σ (x_i y_{i+1} − x_{i+1} y_i): positive for counter-clockwise vertices."""
     # relative to one vertex: no loss of digits for a small polygon far from the origin
     p = np.asarray(polygon, dtype=float) - np.asarray(polygon, dtype=float)[0]
-    return 0.5 * float(_cross(p, np.roll(p, -1, axis=0)).sum())
+    return 0.5 * float(cross(p, np.roll(p, -1, axis=0)).sum())
 
 
 def area(polygon):
@@ -53,16 +54,16 @@ def is_simple(polygon):
         return False
     i, j = np.triu_indices(k, 1)
     gap = p[j] - p[i]
-    det = _cross(d[i], d[j])
+    det = cross(d[i], d[j])
     tiny = 1e-12
     parallel = np.abs(det) <= tiny * length[i] * length[j]
     safe = np.where(parallel, 1.0, det)
-    s, t = _cross(gap, d[j]) / safe, _cross(gap, d[i]) / safe
+    s, t = cross(gap, d[j]) / safe, cross(gap, d[i]) / safe
     crossing = ~parallel & (s >= -tiny) & (s <= 1 + tiny) & (t >= -tiny) & (t <= 1 + tiny)
     along = (gap * d[i]).sum(1) / length[i] ** 2
     reach = (d[i] * d[j]).sum(1) / length[i] ** 2
     overlap = np.minimum(1.0, np.maximum(along, along + reach)) - np.maximum(0.0, np.minimum(along, along + reach))
-    collinear = parallel & (np.abs(_cross(d[i], gap)) <= tiny * length[i] * (length[i] + np.linalg.norm(gap, axis=1)))
+    collinear = parallel & (np.abs(cross(d[i], gap)) <= tiny * length[i] * (length[i] + np.linalg.norm(gap, axis=1)))
     neighbours = (j == i + 1) | ((i == 0) & (j == k - 1))
     # neighbours share one point; they must not overlap
     touching = crossing | (collinear & (overlap >= -tiny))

@@ -275,7 +275,8 @@ class RockAssembly:
         """
         along = np.subtract(end, start)
         length = np.linalg.norm(along)
-        x, y = (along / length) @ (self.positions - start).T, np.cross(along / length, self.positions - start)
+        cosine, sine = along / length
+        x, y = np.array([[cosine, sine], [-sine, cosine]]) @ (self.positions - start).T
         i, j = self.pairs.T
         part = np.divide(y[i], y[i] - y[j], out=np.full(len(i), -1.0), where=y[i] != y[j])
         at = x[i] + part * (x[j] - x[i])

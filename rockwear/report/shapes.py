@@ -3,7 +3,7 @@ import numpy as np
 from scipy.spatial import Delaunay, QhullError, cKDTree
 
 from rockwear.kernels.fragments import pieces
-from rockwear.kernels.polygon import contour
+from rockwear.kernels.polygon import contour, cross
 
 ALPHA = 2.2
 """Gaps whose rim fits on a circle of this many mean radii are closed, as in kernels.surface."""
@@ -27,7 +27,7 @@ def _rims(positions, radii):
     except QhullError:  # all in a line
         return []
     a, b, c = positions[triangles].transpose(1, 0, 2)
-    area = _cross(b - a, c - a) / 2
+    area = cross(b - a, c - a) / 2
     sides = np.linalg.norm(b - a, axis=1) * np.linalg.norm(c - b, axis=1) * np.linalg.norm(a - c, axis=1)
     with np.errstate(divide="ignore"):
         inside = sides / (4 * abs(area)) < ALPHA * radii[triangles].mean(axis=1)
@@ -67,10 +67,6 @@ def _outward(loop):
     normal = np.column_stack([along[:, 1], -along[:, 0]])
     normal = normal + np.roll(normal, 1, axis=0)
     return normal / np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-12)
-
-
-def _cross(a, b):
-    return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
 
 
 def loop(facets):

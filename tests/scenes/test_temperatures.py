@@ -73,7 +73,7 @@ def test_all_passes_take_the_same_heat_a_metre(passes):
 def test_slower_means_cooler_and_a_fixed_shank_too(passes):
     for kind in ("fixed_shank", "insulated_shank"):
         rises = [value(passes, f"hottest_{kind}_{u}") - 293.15 for u in ("4", "0.4", "0.04")]
-        assert rises[0] > 5 * rises[1] > 25 * rises[2] > 0
+        assert rises[0] > 2 * rises[1] > 4 * rises[2] > 0
     for u in ("4", "0.4", "0.04"):
         assert 293.15 < value(passes, f"hottest_fixed_shank_{u}") < value(passes, f"hottest_insulated_shank_{u}")
 
