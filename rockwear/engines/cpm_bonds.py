@@ -39,7 +39,8 @@ _VECTORS = {"normal": lambda contact: contact.geom.normal, "increment": lambda c
             "normal_force": lambda contact: contact.phys.normalForce,
             "shear_force": lambda contact: contact.phys.shearForce,
             "strain": lambda contact: contact.phys.epsT, "slipped": lambda contact: contact.phys.epsTPl}
-"""Vectors of a bond that looks read, and partly write, for many bonds at once."""
+"""Vectors of a bond that looks read, and partly write, for many bonds at once: looks at single ones cost a third of
+YADE's own time."""
 _GROUPS = {"slip": ("slipped", "shear_force"), "looked_at": ("slipped", "omega", "crushed"),
            "limits": ("onset", "fracture"), "damage": ("omega", "kappa"),
            "forces": ("normal", "normal_force", "shear_force"), "moved": ("increment", "radius1", "radius2", "overlap"),
@@ -89,6 +90,13 @@ def _differ(a, b):
 def _vanish(a):
     """(k,) bool: whether vectors (3, k) are 0."""
     return (a[0] == 0.0) & (a[1] == 0.0) & (a[2] == 0.0)
+
+
+def _moved(places, numbers):
+    """(3, k) m, how far the shear forces of bonds moved in the last step: YADE's increment, without the factor, radii
+    over distance, that it gives translations (kernels.stability). A bond of fine discs opens by their radii."""
+    increment, (first, second, overlap) = np.split(places.read("moved", numbers), 2)
+    return increment * (1.0 - overlap / (first + second))
 
 
 def _take_slip(places, numbers, normal, force, stiffness):
@@ -161,8 +169,6 @@ class CpmBonds(BondLog):
     its plastic part: a look takes the slip so far out of both. Neither damage nor strains are in YADE's saved scenes:
     `state` holds them, and `erase_separated`, at every canonical point, sets the damage from omega, which is all that a
     restart knows.
-
-    Vectors are read at once, by engines.memory: looks at single bonds cost a third of YADE's own time.
 
     period: steps between two looks; 1: looks and samples in every step. The engine itself is visited in every step.
     """
@@ -275,15 +281,10 @@ class CpmBonds(BondLog):
         if not len(slid):
             return
         numbers, force, force_before = numbers[slid], now[SHEAR, slid], before[SHEAR, slid]
-        work = -_dot(force + force_before, self._moved(numbers))
+        moved = _moved(self.places, numbers) if self.shear_by_radii else self.places.read("increment", numbers)
+        work = -_dot(force + force_before, moved)
         stored = (_dot(force, force) - _dot(force_before, force_before)) / self.kt[numbers]
         self._dissipate(numbers, 0.5 * self.between_samples * (work - stored), True)
-
-    def _moved(self, numbers):
-        """(3, k) m, how far the forces of bonds moved tangentially in the last step: YADE's increment, without the
-        factor, radii over distance, that it gives translations (kernels.stability). A fine bond opens by its radii."""
-        increment, (first, second, overlap) = np.split(self.places.read("moved", numbers), 2)
-        return increment * (1.0 - overlap / (first + second)) if self.shear_by_radii else increment
 
     def look_at_all(self):
         """Bring damage and status of all bonds up to date."""
