@@ -92,11 +92,11 @@ def _vanish(a):
     return (a[0] == 0.0) & (a[1] == 0.0) & (a[2] == 0.0)
 
 
-def _moved(places, numbers):
-    """(3, k) m, how far the shear forces of bonds moved in the last step: YADE's increment, without the factor, radii
-    over distance, that it gives translations (kernels.stability). A bond of fine discs opens by their radii."""
+def _moved(places, numbers, by_radii):
+    """(3, k) m, how far the shear forces of bonds moved in the last step: YADE's increment, where it is `by_radii`
+    without the factor, radii over distance, of translations (kernels.stability). Fine bonds open by their radii."""
     increment, (first, second, overlap) = np.split(places.read("moved", numbers), 2)
-    return increment * (1.0 - overlap / (first + second))
+    return increment * (1.0 - overlap / (first + second)) if by_radii else increment
 
 
 def _take_slip(places, numbers, normal, force, stiffness):
@@ -281,8 +281,7 @@ class CpmBonds(BondLog):
         if not len(slid):
             return
         numbers, force, force_before = numbers[slid], now[SHEAR, slid], before[SHEAR, slid]
-        moved = _moved(self.places, numbers) if self.shear_by_radii else self.places.read("increment", numbers)
-        work = -_dot(force + force_before, moved)
+        work = -_dot(force + force_before, _moved(self.places, numbers, self.shear_by_radii))
         stored = (_dot(force, force) - _dot(force_before, force_before)) / self.kt[numbers]
         self._dissipate(numbers, 0.5 * self.between_samples * (work - stored), True)
 
