@@ -126,6 +126,48 @@ def test_what_cuts_tell_together():
         "eight discs": "0.8 ± 0.13"}
 
 
+def of_packings(**values):
+    """A row of made-up packings: {quantity: its value in each}."""
+    each = {seed: {name: Measured(one[k], 5.0) for name, one in values.items()}
+            for k, seed in enumerate(steady_cut.SEEDS)}
+    return {"each": each, **{name: steady_cut.over_packings([row[name] for row in each.values()]) for name in values}}
+
+
+def test_a_cause_is_judged_by_what_it_changes_in_each_packing():
+    """Packings differ by far more than the cause, which adds 3, 4 and 5 kN/m to the force and nothing to the rest."""
+    same = {what: [1.0, 2.0, 3.0] for what in steady_cut.CHANGED.values()}
+    found = {"eight discs": of_packings(**{**same, "force": [10.0, 40.0, 90.0]}),
+             "eight discs, rake 15°": of_packings(**{**same, "force": [14.0, 43.0, 95.0]})}
+    assert steady_cut.difference(found["eight discs, rake 15°"], found["eight discs"], "force") == (
+        pytest.approx(4.0), pytest.approx(3**-0.5))
+    row, = steady_cut.changes(found)
+    assert row[:3] == ["eight discs, rake 15°", 3, "4 ± 0.58 (+9 %)"] and row[-1] == "mean Fc, kN/m"
+    # Of fewer packings nothing is told.
+    del found["eight discs"]["each"][1]
+    row, = steady_cut.changes(found)
+    assert row[1] == 2 and row[-1] == "–"
+
+
+@pytest.mark.parametrize("case, other", [
+    ("eight discs, rake 15°", "eight discs"), ("eight discs, no grains", "eight discs"), ("wear flat 2 mm", "base"),
+    ("eight discs, 4 m/s, window 1.5 times as long", "eight discs, velocity 4 m/s"),
+    ("eight discs, depth 1.2 mm, wear flat 1 mm", "eight discs, depth 1.2 mm"), ("base", None), ("eight discs", None),
+    ("eight discs, depth 20 mm", None)])
+def test_each_case_differs_in_one_cause_from_one_other(case, other):
+    assert case in steady_cut.CASES and steady_cut.changed_from(case) == other
+
+
+def test_theories_stand_beside_cuts_of_other_rocks_depths_and_rakes(tmp_path):
+    write(tmp_path / "lab/base-tension-1", {"tensile_strength": 4e6})
+    row = {"ucs": Measured(40.0, 2.0), "peak": Measured(200.0, 10.0), "thrust": Measured(0.9, 0.1)}
+    names = "eight discs", "eight discs, rake 15°", "eight discs, wear flat 1 mm"
+    found = steady_cut.theories(tmp_path, {name: row for name in names})
+    assert [line[0] for line in found] == [*names[:2]]
+    # A wedge of 90 + 5 degrees: 2 * 4 MPa * 5 mm * sin(47.5) / (1 - sin(47.5)); friction of 0.3 on a rake of -5.
+    assert found[0][1:3] == ["200 ± 10", "112"] and found[0][5] == f"{math.tan(math.atan(0.3) + math.radians(5)):.2f}"
+    assert float(found[1][2]) < float(found[0][2])
+
+
 def test_the_figure_over_the_discs_has_what_is_there():
     row = {name: Measured(value, error) for name, value, error in (
         ("energy", 0.12, 0.02), ("peaks", 5.0, math.nan), ("overbreak", 0.5, 0.1), ("thrust", 0.7, 0.1))}
