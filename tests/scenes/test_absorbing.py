@@ -14,6 +14,12 @@ def test_little_comes_back(checks, pulse, limit):
     assert checks[pulse]["amplitude"] < limit
 
 
+@pytest.mark.parametrize("load", ["vertical", "horizontal"])
+def test_a_load_that_stays_moves_the_surface_as_that_of_a_half_plane(checks, load):
+    """Between 5 and 20 diameters from a load in the middle of a window of 60 x 30."""
+    assert checks["settled"][load] == pytest.approx(1, abs=0.1)
+
+
 def test_the_dashpots_take_what_is_missing(checks):
     assert all(abs(checks[pulse]["missed"]) < 3e-3 for pulse in ("P0", "S0", "P45", "S45"))
 

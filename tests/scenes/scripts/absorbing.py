@@ -29,12 +29,12 @@ LOAD_STEP = 1e-12
 """s of the one step that gives the rock the displacements of the pulse."""
 
 
-def lattice():
-    """Discs that touch in equilateral triangles."""
-    rows = round(HEIGHT * 2 / math.sqrt(3))
+def lattice(width=WIDTH, height=HEIGHT):
+    """Discs that touch in equilateral triangles; width, height: diameters."""
+    rows = round(height * 2 / math.sqrt(3))
     places = np.array([(RADIUS * (1 + 2 * column + row % 2), RADIUS * (1 + math.sqrt(3) * row))
-                       for row in range(rows) for column in range(WIDTH)])
-    box = RADIUS * (2 * WIDTH + 1), RADIUS * (2 + math.sqrt(3) * (rows - 1))
+                       for row in range(rows) for column in range(width)])
+    box = RADIUS * (2 * width + 1), RADIUS * (2 + math.sqrt(3) * (rows - 1))
     return Arranged(positions=places, radius=RADIUS, width=box[0], height=box[1], density=2500.0)
 
 
@@ -80,7 +80,8 @@ def move(velocities):
 class Block:
     """A block of rock in YADE, its other sides free."""
 
-    def __init__(self, rock):
+    def __init__(self, rock, damping=0.0, fraction=0.7):
+        """damping: non-viscous; fraction: of the critical step."""
         self.rock = rock
         self.rock.bond(LAW)
         low = 8 * RADIUS
@@ -93,14 +94,14 @@ class Block:
         O.reset()
         yade_scene.put_rock_materials(mu=LAW.mu)
         yade_scene.put_rock(rock)
-        yade_scene.put_loop(rock=LAW, ratcheting_free=False)
+        yade_scene.put_loop(rock=LAW, ratcheting_free=False, damping=damping)
         self.bonds = yade_scene.bonds_engine(rock, LAW, lambda: O.time)
         yade_scene.make_bonds(rock, self.bonds)
         critical = critical_time_step(
             positions=rock.positions, radii=rock.radii, masses=rock.masses, inertias=rock.inertias, bonds=rock.pairs,
             kn=LAW.kn, kt=LAW.kt)
         # At 0.8 the dashpots of the lattice would be cut by a tenth.
-        self.step = 0.7 * critical
+        self.step = fraction * critical
         self.boundary = AbsorbingBoundary(moduli=self.moduli, density=self.density, period=2, step=self.step,
                                           critical=critical)
         self.engines = [self.bonds, self.boundary]
@@ -147,6 +148,46 @@ def reflected(block, kind, degrees, wavelength, amplitude):
             "missed": (first - left - (block.boundary.absorbed - before)) / first}
 
 
+RELAXED = 5000
+"""Steps in which displacements come to rest."""
+STATIC = 60, 30
+"""Diameters of a window under a load that stays."""
+NEAR, FAR = 5.0, 20.0
+"""Diameters from the load between which displacements of the surface are compared."""
+
+
+def settled():
+    """Difference of displacements of the surface near and far from a load on it, over that of a half-plane.
+
+    Of a line load P, normal or along the surface, displacements along it go as -2 P / (pi E) ln(distance) (Flamant).
+    """
+    found = {}
+    for direction, along in (("vertical", 1), ("horizontal", 0)):
+        # Non-viscous damping makes forces larger that slow a particle down, those of dashpots too.
+        block = Block(lattice(*STATIC), damping=0.5, fraction=0.5)
+        rock, (x, y) = block.rock, block.rock.positions.T
+        faces = [(y < 1.05 * RADIUS, (0.0, -1.0), x, rock.width, rock.height),
+                 (x < 1.05 * RADIUS, (-1.0, 0.0), y, rock.height, 0.5 * rock.width),
+                 (x > rock.width - 1.05 * RADIUS, (1.0, 0.0), y, rock.height, 0.5 * rock.width)]
+        parts = [(np.flatnonzero(face), normal, shares(place[face], 0, length), np.full(face.sum(), distance))
+                 for face, normal, place, length, distance in faces]
+        block.boundary.hold(np.concatenate([numbers for numbers, *_ in parts]),
+                            [normal for numbers, normal, *_ in parts for _ in numbers],
+                            *(np.concatenate([part[k] for part in parts]) for k in (2, 3)))
+        top = np.flatnonzero(y > y.max() - 0.5 * RADIUS)
+        away = abs(x[top] - 0.5 * rock.width)
+        loaded, load = top[away.argmin()], np.zeros(3)
+        away = abs(x[top] - x[loaded]) / (2 * RADIUS)
+        load[along] = -1.0
+        O.forces.setPermF(int(loaded), load.tolist())
+        O.dt = block.step
+        base.run(RELAXED)
+        moved = (rock_states(rock)[:, :2] - rock.positions)[top, along] / load[along]
+        near, far = (moved[abs(away - distance) < 0.1].mean() for distance in (NEAR, FAR))
+        found[direction] = (near - far) / (2 / (math.pi * block.moduli.young) * math.log(FAR / NEAR))
+    return found
+
+
 def release(block):
     """Energy that particles gain when they are let go, over what the springs of half a radius would hold."""
     before, springs = block.energy(), float(np.sum(block.boundary.kn)) * RADIUS**2 / 8
@@ -187,6 +228,7 @@ def main():
              for (wave, degrees), amplitude in zip(pulses, AMPLITUDES)}
     found["release"] = release(block)
     found["pulled"] = pulled()
+    found["settled"] = settled()
     with open(sys.argv[-1], "w", encoding="utf-8") as file:
         json.dump(found, file)
 
