@@ -19,6 +19,7 @@ import numpy as np
 
 from calibration import generated
 from calibration.campaigns.runs import RunFailed, Runs
+from calibration.command import Parser
 from calibration.laboratory import strength_table
 from rockwear.kernels.checks import ParameterError, require
 from rockwear.kernels.parameter import integer, listed, number, numbers
@@ -154,8 +155,8 @@ def _curve(fit):
 
 def main(words):
     """Measure, fit, write. -> exit code."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter,
-                                     allow_abbrev=False)
+    parser = Parser(prog="python3 -m calibration.laboratory.envelope", description=__doc__,
+                    formatter_class=argparse.RawDescriptionHelpFormatter, allow_abbrev=False)
     parser.add_argument("folder", type=Path, metavar="DIR")
     for name, default in (("confinements", CONFINEMENTS), ("seeds", SEEDS), ("points", "")):
         parser.add_argument(f"--{name}", default=default)
