@@ -19,7 +19,7 @@ import numpy as np
 
 from calibration import generated
 from calibration.campaigns.runs import RunFailed, Runs
-from calibration.command import Parser
+from calibration.command import Parser, made
 from calibration.laboratory import strength_table
 from rockwear.kernels.checks import ParameterError, require
 from rockwear.kernels.parameter import integer, listed, number, numbers
@@ -170,7 +170,7 @@ def main(words):
         laboratory = [{"sigma3": least, "peak_stress": largest} for least, largest in rows
                       if least <= max(confinements)]
         laboratory = fitted(laboratory) if laboratory else None
-        ours = measure(given.folder, confinements=confinements, seeds=seeds,
+        ours = measure(made(given.folder, "DIR"), confinements=confinements, seeds=seeds,
                        **{name[2:]: value for name, value in zip(rest[::2], rest[1::2])})
     except ParameterError as error:
         print(f"error: {error}", file=sys.stderr)

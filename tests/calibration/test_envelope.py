@@ -40,6 +40,12 @@ def test_bad_input_ends_in_one_line_before_the_first_run(tmp_path, capsys, words
     assert not (tmp_path / "out").exists()
 
 
+def test_a_folder_that_cannot_be_made_is_refused(tmp_path, capsys):
+    (tmp_path / "file").touch()
+    assert envelope.main([str(tmp_path / "file/out")]) == 2
+    assert "file/out: must be a folder that can be written" in capsys.readouterr().err
+
+
 def test_a_rock_is_measured_fitted_and_drawn(tmp_path):
     """Two confinements, one packing of some 120 discs; the second time nothing runs."""
     out, laboratory = tmp_path / "out", tmp_path / "points.csv"
