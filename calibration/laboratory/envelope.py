@@ -22,7 +22,7 @@ from calibration.campaigns.runs import RunFailed, Runs
 from calibration.command import Parser, made
 from calibration.laboratory import strength_table
 from rockwear.kernels.checks import ParameterError, require
-from rockwear.kernels.parameter import integer, listed, number, numbers
+from rockwear.kernels.parameter import integer, listed, numbers
 from rockwear.kernels.strength_envelope import hoek_brown, mohr_coulomb
 from rockwear.report import palette, plots
 
@@ -162,7 +162,7 @@ def main(words):
         parser.add_argument(f"--{name}", default=default)
     given, rest = parser.parse_known_args(words)
     try:
-        confinements = listed(numbers(number(0, 1e9))("confinements", given.confinements, "Pa"))
+        confinements = listed(numbers(strength_table.CONFINEMENT)("confinements", given.confinements, "Pa"))
         seeds = [int(seed) for seed in listed(numbers(integer(0))("seeds", given.seeds, ""))]
         require(len(rest) % 2 == 0 and all(name.startswith("--") for name in rest[::2]), "arguments", " ".join(rest),
                 "pairs of --name value")
