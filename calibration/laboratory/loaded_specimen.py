@@ -280,6 +280,12 @@ class SpecimenOutput(Output):
         if not self.failed:
             found.append(f"the stress has not fallen to {self.scene.v.drop:g} of its peak: strengths are what the "
                          "specimen bore up to here; a larger strain_max tells more")
+        columns = self.scene.recorder.columns()
+        results = self.found(columns) if columns else {}
+        unknown = [name for name, (value, _) in results.items() if math.isnan(value)]
+        if unknown or not results:
+            found.append(f"not known: {', '.join(unknown) or 'strengths and moduli'}; the record is too short or too "
+                         "coarse for them: a lower record_strain or speed tells more")
         return found
 
     def log(self):

@@ -53,6 +53,12 @@ def test_compression_alone_never_breaks_a_bond_in_tension(tmp_path):
     assert value(run, "peak_stress") == pytest.approx(20e9 * 0.05 * 4e-3 / 2e-3, rel=5e-3)
 
 
+@pytest.mark.parametrize("strain, names", [(0.9e-3, "strengths and moduli"), (1.5e-3, "youngs_modulus")])
+def test_what_a_coarse_record_does_not_tell_is_said(tmp_path, strain, names):
+    run = laboratory(tmp_path / "out", **{**CHAIN, "strain_max": strain}, record_strain=1e-3)
+    assert run.code == 0 and f"not known: {names}" in run.stderr
+
+
 def test_a_pulled_chain_breaks_at_its_strength(tmp_path):
     run = laboratory(tmp_path / "out", **CHAIN, test="tension", speed=0.01)
     assert value(run, "failed") and (value(run, "tensile_cracks"), value(run, "shear_cracks")) == (1, 0)
