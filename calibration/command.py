@@ -3,6 +3,8 @@ import argparse
 import sys
 from pathlib import Path
 
+from rockwear.kernels.checks import ParameterError
+
 
 class Parser(argparse.ArgumentParser):
     """argparse's parser, which says what is wrong in one line."""
@@ -33,6 +35,15 @@ def split(words, name, usage, *, least=1, most=1, known=()):
         print(f"usage: python3 -m {name.removesuffix('.__main__')} {usage}{said}", file=sys.stderr)
         sys.exit(2)
     return [Path(path) for path in paths], found
+
+
+def made(path, name="out"):
+    """`path`, the folder that the parameter `name` gives, there from now on. Raises ParameterError."""
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise ParameterError(name, str(path), f"a folder that can be written ({error.strerror})") from None
+    return path
 
 
 def folder(name, default=None):

@@ -22,8 +22,8 @@ LAYERS = {
     "yade_scripts": ({"rockwear.scenes", "rockwear.run", "calibration.laboratory"}, set()),
     # A command that runs scenes and draws; no scene imports it.
     "calibration/laboratory/envelope.py": (
-        {"rockwear.kernels", "rockwear.report", "calibration.campaigns.runs", "calibration.generated",
-         "calibration.laboratory.strength_table"}, PAPER),
+        {"rockwear.kernels", "rockwear.report", "calibration.campaigns.runs", "calibration.command",
+         "calibration.generated", "calibration.laboratory.strength_table"}, PAPER),
     "calibration/laboratory": (
         {"rockwear.kernels", "rockwear.model", "rockwear.engines", "rockwear.run", "rockwear.report", "rockwear.scenes",
          "calibration.laboratory"}, YADE),

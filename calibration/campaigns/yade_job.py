@@ -38,6 +38,14 @@ def run(job, dropped=lambda: False):
 
     A run that finished meanwhile is not repeated: the scheduler also sends a job again when it has lost its worker.
     """
+    try:
+        return _run_to_end(job, dropped)
+    except OSError as error:
+        # Raised, it would look as if the scheduler had gone.
+        return 1, f"error: {error}"
+
+
+def _run_to_end(job, dropped):
     folder = Path(job["folder"])
     folder.parent.mkdir(parents=True, exist_ok=True)
     while True:

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from calibration.campaigns.runs import RunFailed, Runs, require_dask
+from calibration.command import made
 from calibration.fitting import rock_page
 from calibration.fitting.rock_unknowns import AIM, Micro
 from calibration.fitting.rock_targets import GROUPS, STAGES, doubts, given_of, start_of, targets_of
@@ -171,7 +172,7 @@ def main(words):
         most = JOBS * os.cpu_count()
         require(values["jobs"] <= most, "jobs", values["jobs"], f"at most {most}, {JOBS} for each processor here")
         require(values["out"], "out", "nothing", "given: the folder of the results")
-        folder = _folder(values["out"])
+        folder = made(Path(values["out"]))
         require_dask()
     except ParameterError as error:
         print(f"error: {error}", file=sys.stderr)
@@ -201,12 +202,3 @@ def exit_code(verdicts):
     if any(one.missed for one in verdicts):
         return 3
     return 0 if all(one.told for one in verdicts) else 4
-
-
-def _folder(word):
-    folder = Path(word)
-    try:
-        (folder / "runs").mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise ParameterError("out", word, f"a folder that can be written ({error.strerror})") from None
-    return folder

@@ -23,6 +23,7 @@ from pathlib import Path
 import numpy as np
 
 from calibration import generated
+from calibration.command import Parser
 from rockwear.kernels.archard import BRINELL, KELVIN, MET71, MET91
 from rockwear.kernels.checks import ParameterError, finite, positive, require
 from rockwear.kernels.wear_fitting import LaboratoryTest
@@ -208,8 +209,8 @@ def draw(found, file):
 
 def main(words=None):
     """Command line. -> exit code: 0, or 2 for invalid input, reported in one line."""
-    parser = argparse.ArgumentParser(prog="python3 -m calibration.fitting.wear_fit", description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = Parser(prog="python3 -m calibration.fitting.wear_fit", description=__doc__,
+                    formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("file", nargs="?", default=str(EXAMPLE),
                         help="CSV file; default: the four tests of [Rojek 2003, 6.6]")
     parser.add_argument("--wear_law", default="pressure", choices=sorted(WEAR_LAWS))

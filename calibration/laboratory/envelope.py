@@ -19,9 +19,10 @@ import numpy as np
 
 from calibration import generated
 from calibration.campaigns.runs import RunFailed, Runs
+from calibration.command import Parser, made
 from calibration.laboratory import strength_table
 from rockwear.kernels.checks import ParameterError, require
-from rockwear.kernels.parameter import integer, listed, number, numbers
+from rockwear.kernels.parameter import integer, listed, numbers
 from rockwear.kernels.strength_envelope import hoek_brown, mohr_coulomb
 from rockwear.report import palette, plots
 
@@ -154,14 +155,14 @@ def _curve(fit):
 
 def main(words):
     """Measure, fit, write. -> exit code."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter,
-                                     allow_abbrev=False)
+    parser = Parser(prog="python3 -m calibration.laboratory.envelope", description=__doc__,
+                    formatter_class=argparse.RawDescriptionHelpFormatter, allow_abbrev=False)
     parser.add_argument("folder", type=Path, metavar="DIR")
     for name, default in (("confinements", CONFINEMENTS), ("seeds", SEEDS), ("points", "")):
         parser.add_argument(f"--{name}", default=default)
     given, rest = parser.parse_known_args(words)
     try:
-        confinements = listed(numbers(number(0, 1e9))("confinements", given.confinements, "Pa"))
+        confinements = listed(numbers(strength_table.CONFINEMENT)("confinements", given.confinements, "Pa"))
         seeds = [int(seed) for seed in listed(numbers(integer(0))("seeds", given.seeds, ""))]
         require(len(rest) % 2 == 0 and all(name.startswith("--") for name in rest[::2]), "arguments", " ".join(rest),
                 "pairs of --name value")
@@ -169,7 +170,7 @@ def main(words):
         laboratory = [{"sigma3": least, "peak_stress": largest} for least, largest in rows
                       if least <= max(confinements)]
         laboratory = fitted(laboratory) if laboratory else None
-        ours = measure(given.folder, confinements=confinements, seeds=seeds,
+        ours = measure(made(given.folder, "DIR"), confinements=confinements, seeds=seeds,
                        **{name[2:]: value for name, value in zip(rest[::2], rest[1::2])})
     except ParameterError as error:
         print(f"error: {error}", file=sys.stderr)

@@ -27,7 +27,7 @@ from rockwear.model.contact import PLANE, SPACE
 from rockwear.model.rock import Block, Specimen
 from rockwear.run import vtk
 from rockwear.scenes import parameters, parts, yade_scene
-from rockwear.scenes.balances import with_residual
+from rockwear.scenes.balances import energy_warnings, with_residual
 from rockwear.scenes.output import Output, crack_table, density_map
 from rockwear.scenes.scene import Scene
 
@@ -270,6 +270,24 @@ class SpecimenOutput(Output):
         """Unit of energy."""
         return (PLANE if self.scene.rock.depth is None else SPACE).energy
 
+    @property
+    def failed(self):
+        """Whether the stress has fallen to `drop` of its peak."""
+        return bool(self.scene.strength_measure() < self.scene.v.drop * self.scene.failure.peak)
+
+    def warnings(self):
+        found = energy_warnings(self.balances()["energy"][0])
+        if not self.failed:
+            found.append(f"the stress has not fallen to {self.scene.v.drop:g} of its peak: strengths are what the "
+                         "specimen bore up to here; a larger strain_max tells more")
+        columns = self.scene.recorder.columns()
+        results = self.found(columns) if columns else {}
+        unknown = [name for name, (value, _) in results.items() if math.isnan(value)]
+        if unknown or not results:
+            found.append(f"not known: {', '.join(unknown) or 'strengths and moduli'}; the record is too short or too "
+                         "coarse for them: a lower record_strain or speed tells more")
+        return found
+
     def log(self):
         """{name: (value, unit)} of the history."""
         pull, difference = self.scene.platens.take_mean()
@@ -288,7 +306,7 @@ class SpecimenOutput(Output):
     def results(self):
         """{name: (value, unit)} of the run."""
         columns, scene = self.scene.recorder.columns(), self.scene
-        found = {"failed": (bool(scene.strength_measure() < scene.v.drop * scene.failure.peak), "-")}
+        found = {"failed": (self.failed, "-")}
         if columns:
             found.update(self.found(columns))
             for name in ("tensile_cracks", "shear_cracks"):

@@ -3,6 +3,7 @@ import csv
 import re
 
 from rockwear.kernels.checks import ParameterError, finite, require
+from rockwear.kernels.parameter import zero_or
 from rockwear.model.rock_file import PROPERTIES
 
 UNITS = {"pa": 1.0, "kpa": 1e3, "mpa": 1e6, "gpa": 1e9}
@@ -12,6 +13,8 @@ OTHER_UNITS = {"psi", "ksi", "mpsi", "psf", "ksf", "tsf", "bar", "mbar", "kbar",
 """Words of units that stresses come in elsewhere."""
 LEAST = 1e3
 """Pa, the least stress but 0: what is less has another unit than its header says."""
+CONFINEMENT = zero_or(LEAST, 1e9)
+"""A rule: Pa, the confinement of a test."""
 
 
 def read(path, parameter):

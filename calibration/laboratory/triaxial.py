@@ -9,14 +9,15 @@ import numpy as np
 from yade import utils
 
 from calibration.laboratory.loaded_specimen import SpecimenOutput, SpecimenTest, groups
+from calibration.laboratory.strength_table import CONFINEMENT
 from rockwear.engines.confinement import Membrane, PressedEnds
 from rockwear.kernels.checks import require
 from rockwear.kernels.membrane import STIFF
-from rockwear.kernels.parameter import Parameter, integer, number
+from rockwear.kernels.parameter import Parameter, integer
 from rockwear.kernels.stress_strain import measured
 
 GROUPS = groups(
-    Parameter("confinement", 10e6, "Pa", number(0, 1e9), "pressure on the sides, and first on the ends too",
+    Parameter("confinement", 10e6, "Pa", CONFINEMENT, "pressure on the sides, and first on the ends too",
               "[Bahaaddini 2018]: 0 to 10 MPa"),
     Parameter("membrane_interval", 100, "steps", integer(1), "between searches for the discs at the sides",
               "calibration/results/laboratory.md"),

@@ -24,7 +24,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from calibration.campaigns import runs, yade_job
-from calibration.command import Parser
+from calibration.command import Parser, made
 from calibration.generated import ROOT
 from calibration.sweep import page, slurm
 from rockwear.kernels.checks import ParameterError, require
@@ -69,11 +69,7 @@ def read_rows(table, script, out):
         found = json.loads(file.read_text(encoding="utf-8"))
     if "error" in found:
         raise SweepError(found["error"])
-    folder = Path(out or _common_out(found["rows"]) or Path("out") / Path(table).stem)
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise ParameterError("out", str(folder), f"a folder that can be written ({error.strerror})") from None
+    folder = made(Path(out or _common_out(found["rows"]) or Path("out") / Path(table).stem))
     script = Path(script).resolve()
     rows = []
     for row in found["rows"]:

@@ -59,8 +59,7 @@ def test_help_is_said_and_nothing_is_made(run, command):
 
 
 @pytest.mark.filterwarnings("ignore:.*found in sys.modules:RuntimeWarning")
-@pytest.mark.parametrize("command", [name for name in COMMANDS if name not in (
-    "calibration.fitting.wear_fit", "calibration.laboratory.envelope")])
+@pytest.mark.parametrize("command", COMMANDS)
 def test_an_unknown_option_is_refused_in_one_line(run, command):
     for words in (["--no-such"], ["DIR", "--no-such"]):
         code, said, wrong = run(command, *words)

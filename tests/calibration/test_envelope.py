@@ -31,13 +31,20 @@ def test_points_without_a_curve_keep_their_line():
 
 
 @pytest.mark.parametrize("words, said", [
-    (["--confinements=-1,2"], "confinements = -1 Pa: must be at least 0"), (["--seeds", "1.5"], "seeds = 1.5"),
+    (["--confinements=-1,2"], "confinements = -1 Pa: must be 0 or between 1000 and 1e+09"),
+    (["--confinements", "0,5,10"], "confinements = 5 Pa: must be 0 or between"), (["--seeds", "1.5"], "seeds = 1.5"),
     (["--Rn"], "pairs of --name value"), (["--points", "nowhere.csv"], "points = nowhere.csv: must be a readable CSV")])
 def test_bad_input_ends_in_one_line_before_the_first_run(tmp_path, capsys, words, said):
     assert envelope.main([str(tmp_path / "out"), *words]) == 2
     lines = capsys.readouterr().err.splitlines()
     assert len(lines) == 1 and lines[0].startswith("error: ") and said in lines[0]
     assert not (tmp_path / "out").exists()
+
+
+def test_a_folder_that_cannot_be_made_is_refused(tmp_path, capsys):
+    (tmp_path / "file").touch()
+    assert envelope.main([str(tmp_path / "file/out")]) == 2
+    assert "file/out: must be a folder that can be written" in capsys.readouterr().err
 
 
 def test_a_rock_is_measured_fitted_and_drawn(tmp_path):

@@ -202,6 +202,12 @@ def test_a_job_tells_how_it_ended_and_resumes_what_fits(tmp_path, words, code, s
     assert yade_job.run(job(tmp_path / "row", words)) == (code, said)
 
 
+def test_a_job_tells_why_it_could_not_begin(tmp_path):
+    (tmp_path / "file").touch()
+    code, said = yade_job.run(job(tmp_path / "file/row", "exit 0"))
+    assert code == 1 and said.startswith("error: ") and "file" in said
+
+
 def test_a_job_that_is_no_longer_wanted_is_stopped(tmp_path):
     begin = time.time()
     code, _ = yade_job.run(job(tmp_path / "row", "sleep 60"), lambda: time.time() > begin + 0.1)

@@ -124,6 +124,18 @@ def test_a_short_cut_says_so(tmp_path, chips):
     assert "too short to rely on" in steady.steady_cut(make_steady(tmp_path / "run", chips=chips)).html()
 
 
+def test_the_legend_of_a_short_cut_names_what_is_drawn(tmp_path):
+    """Two chips: no peak after the transient, an error that is not known, and less than ten depths of record."""
+    run = make_steady(tmp_path / "run", chips=2)
+    assert run.result("peaks") == 0 and math.isnan(run.result("mean_cutting_force_standard_error"))
+    upper, _ = steady.force_figure(run).axes
+    labels = [words.get_text() for words in upper.get_legend().get_texts()]
+    depths = np.ptp(run.column("distance")) / DEPTH
+    assert [words for words in labels if words.startswith("means over")] == [f"means over {depths:.3g} depths of cut"]
+    assert any(words.endswith("its error is not known") for words in labels)
+    assert not any("twice" in words or "peak" in words for words in labels)
+
+
 def test_what_was_not_written_is_not_shown(tmp_path):
     run = make_steady(tmp_path / "run", tables=False)
     assert steady.steady_cut(run).html().count("<img") == 1

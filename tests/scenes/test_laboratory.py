@@ -42,6 +42,7 @@ def test_a_triangular_lattice_has_its_exact_moduli(tmp_path, test, kt):
     assert value(run, "youngs_modulus") == pytest.approx(2 * math.sqrt(3) * kn * (kn + kt) / (3 * kn + kt), rel=1e-3)
     assert value(run, "poissons_ratio") == pytest.approx((kn - kt) / (3 * kn + kt), abs=1e-3)
     assert not value(run, "failed") and value(run, "tensile_cracks") == value(run, "shear_cracks") == 0
+    assert "the stress has not fallen to 0.5 of its peak" in run.stderr
 
 
 def test_compression_alone_never_breaks_a_bond_in_tension(tmp_path):
@@ -50,6 +51,12 @@ def test_compression_alone_never_breaks_a_bond_in_tension(tmp_path):
     assert value(run, "tensile_cracks") == value(run, "shear_cracks") == 0
     # The bond of one diameter is shortened by the travel of both platens.
     assert value(run, "peak_stress") == pytest.approx(20e9 * 0.05 * 4e-3 / 2e-3, rel=5e-3)
+
+
+@pytest.mark.parametrize("strain, names", [(0.9e-3, "strengths and moduli"), (1.5e-3, "youngs_modulus")])
+def test_what_a_coarse_record_does_not_tell_is_said(tmp_path, strain, names):
+    run = laboratory(tmp_path / "out", **{**CHAIN, "strain_max": strain}, record_strain=1e-3)
+    assert run.code == 0 and f"not known: {names}" in run.stderr
 
 
 def test_a_pulled_chain_breaks_at_its_strength(tmp_path):
@@ -61,6 +68,7 @@ def test_a_pulled_chain_breaks_at_its_strength(tmp_path):
 def test_compression_breaks_the_specimen(compressed):
     assert compressed.code == 0, compressed.stderr
     assert value(compressed, "failed") and compressed.summary["ended"].startswith("failed at")
+    assert compressed.summary["warnings"] == []
     assert value(compressed, "peak_stress") > 10e6
     assert 10e9 < value(compressed, "youngs_modulus") < 25e9 and 0 < value(compressed, "poissons_ratio") < 0.4
     assert value(compressed, "tensile_cracks") + value(compressed, "shear_cracks") > 10

@@ -11,7 +11,7 @@ from rockwear.report.page import Section, number, percent, quantity, shown_unit,
 from rockwear.report.plots import MM, canvas, legend, save
 
 BLOCK = 5 * CELL
-"""Length, in depths of cut, of the means that show whether the force drifts."""
+"""Length, in depths of cut, of the means that show whether the force drifts, as near as it divides the record."""
 LEVEL = 0.1
 """Height, in depths of cut, of a bar of cracks."""
 STRIP, MOST_STRIPS = 25, 4
@@ -89,8 +89,9 @@ def force_figure(run):
         draw_mean(run, axes, name, factor * begin, factor * distance[-1])
         axes.plot(factor * middles(distance, fine), record, color=colour, linewidth=0.5, alpha=0.6)
         axes.stairs(blocks(distance, total, coarse), factor * np.linspace(distance[0], distance[-1], coarse + 1),
-                    color=colour, linewidth=2, baseline=None, label=f"means over {BLOCK} depths of cut")
-        if name == "cutting_force":
+                    color=colour, linewidth=2, baseline=None,
+                    label=f"means over {number(length / (coarse * depth))} depths of cut")
+        if name == "cutting_force" and run.result("peaks"):
             found = peaks(distance, force, depth=depth, begin=begin)
             axes.plot(factor * found.distance, found.force, "v", color=palette.LARGEST, markersize=4,
                       label=f"peak of a chip, mean\n{shown(run, 'mean_peak_cutting_force')}")
@@ -105,8 +106,9 @@ def force_figure(run):
 def draw_mean(run, axes, name, begin, end):
     """The mean with a band of twice its standard error on either side, from `begin` on."""
     value, error = (1e-3 * run.result(f"mean_{name}{part}") for part in ("", "_standard_error"))
+    band = "band: twice the error" if math.isfinite(error) else "its error is not known"
     axes.plot([begin, end], [value, value], color=palette.MEAN, linewidth=1.5, zorder=3,
-              label=f"mean {shown(run, f'mean_{name}')};\nband: twice the error")
+              label=f"mean {shown(run, f'mean_{name}')};\n{band}")
     if math.isfinite(error):
         axes.fill_between([begin, end], value - 2 * error, value + 2 * error, color=palette.MEAN, alpha=0.15,
                           linewidth=0)
