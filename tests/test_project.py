@@ -129,6 +129,17 @@ def test_documents_name_what_exists(trees):
     none_of(missing)
 
 
+def test_every_scene_is_in_the_table_and_in_a_test(trees):
+    """Tests start a script by its name, or by its path in yade_scripts/; campaign-wear starts the ripper."""
+    scripts = {file.stem for file in PRODUCT if file.parent.name == "yade_scripts"} - {"find_rockwear"}
+    table = "\n".join(line for line in read(README).splitlines() if line.startswith("| `"))
+    none_of({f"README: {script}" for script in scripts if f"`{script}.py`" not in table})
+    words = {node.value for file, tree in trees.items() if name(file).startswith("tests/scenes/test_")
+             for node in ast.walk(tree) if isinstance(node, ast.Constant) and isinstance(node.value, str)}
+    started = {script for script in scripts if words & {script, f"yade_scripts/{script}.py"}}
+    none_of({f"tests/scenes: {script}" for script in scripts - started - {"ripper"}})
+
+
 def test_sources_are_cited_by_resolvable_keys():
     """[Rojek 2003, 9.2], not "M 9.2" or "M's"."""
     private = re.compile(r"\b[MPRV]['’]s\b|\b[MPRV] \d+(\.\d+)*\b")

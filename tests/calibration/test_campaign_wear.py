@@ -4,11 +4,12 @@ import pytest
 
 from calibration.campaigns import wear as campaign_wear
 from calibration.campaigns.runs import finished
+from rockwear.kernels.archard import MET91
 from rockwear.report.folder import RunFolder
 
 ROCK = dict(width=0.045, height=0.03, radius_min=2e-3, radius_max=3e-3)
 TINY = dict(ROCK, tooth_height=0.02, tooth_width=0.014, rake=10, clearance=10, tip_radius=2e-3, depth_of_cut=8e-3,
-            start_up=9e-4, cycles=2, cycle_time=3e-4, snapshot_period=4e-4, heat="false")
+            start_up=9e-4, cycles=2, cycle_time=3e-4, snapshot_period=4e-4, tool_temperature=500)
 PARTICLES = dict(tool_radius_min=0.4e-3, tool_radius_max=0.6e-3)
 CASES = {"ripper, 2e5": dict(wear_acceleration=4e5, report="false"),
          "twice as fast": dict(wear_acceleration=8e5, start_up=6e-4, cycles=1)}
@@ -22,7 +23,7 @@ def campaign(tmp_path_factory):
     def run():
         with pytest.MonkeyPatch.context() as patch:
             patch.setattr(campaign_wear, "CASES", {
-                name: (campaign_wear.TOOTH, {**TINY, **PARTICLES, **values}) for name, values in CASES.items()})
+                name: (campaign_wear.RIPPER, {**TINY, **PARTICLES, **values}) for name, values in CASES.items()})
             patch.setattr(campaign_wear, "SAME_WORK", {"a hundredth": tuple(CASES), "a quarter": ("test tooth, 9e9",)})
             campaign_wear.main(folder)
     run()
@@ -34,6 +35,16 @@ def test_the_page_shows_every_run(campaign):
     for words in (*CASES, "Rate of wear", "until a hundredth of the tooth is worn off"):
         assert words in page
     assert "a quarter" not in page
+
+
+def test_the_ripper_wears_by_its_friction_at_the_hardness_of_20_degrees(campaign):
+    """k F s / H of its own friction work; without heat, and whatever the temperature of the tool."""
+    for name, values in CASES.items():
+        run = RunFolder(campaign[0] / name.replace(", ", "-").replace(" ", "_"))
+        assert run.summary["scene"] == "ripper"
+        assert "heat" not in run.balances
+        exact = 0.01128 * values["wear_acceleration"] / 0.3 * run.balances["friction"]["worn_by"] / MET91(293.15)
+        assert run.result("worn_volume") == pytest.approx(exact, rel=1e-9, abs=0)
 
 
 def test_what_the_figure_of_accelerations_compares(campaign):
@@ -57,7 +68,7 @@ def test_finished_runs_stay(campaign):
 
 def test_a_run_that_failed_shows_its_error_and_is_not_kept(tmp_path, monkeypatch, capsys):
     """Its warnings come last, and it leaves a summary as well."""
-    values = {**TINY, "tool": "segments", "wear_acceleration": 1e7}
+    values = {**TINY, "heat": "false", "tool": "segments", "wear_acceleration": 1e7}
     monkeypatch.setattr(campaign_wear, "CASES", {"too fast": (campaign_wear.TOOTH, values)})
     assert campaign_wear.main(tmp_path) == 1
     assert "too_fast ended with 1: error: the tool's shape cannot follow its wear" in capsys.readouterr().err

@@ -22,12 +22,13 @@ DENSITY = 7830.0
 LIGHT = 10.0
 """Specific heat (J/kg K) for which a short run heats the tool by as much as makes a difference to its hardness."""
 HOT = dict(tool_temperature=650, rock_temperature=650, ambient_temperature=650)
-K = 0.01
-IN_SPACE = {**BLOCK, "cut_time": 0.04, "heat": "true", "hardness": 0, "wear_coefficient": K, "wear_acceleration": 1000,
+IN_SPACE = {**{name: v for name, v in BLOCK.items() if name not in ("Rn", "Rt")}, "cut_time": 0.04,
             "heat_period": 1e-4, "surface_period": 0.02, "report": "false"}
-OF_SEGMENTS = {**SMALL, "tool": "segments", "start_up": 8e-4, "cycle_time": 2e-4, "wear_coefficient": K,
+"""The block of cutting_3d_thermal.py in miniature; bonds, wear and heat are the script's own."""
+OF_SEGMENTS = {**{name: v for name, v in SMALL.items() if name != "cycles"}, "start_up": 8e-4, "cycle_time": 2e-4,
                "wear_acceleration": 20000, "wear_period": 50, "report": "false", "control_radius": 3,
                "emissivity": 0.9}
+"""The cut of segments_thermal.py in miniature, its wear as much faster as it is shorter."""
 
 
 def script(name):
@@ -56,7 +57,8 @@ def assert_balances_close(done):
 def wear_per_hardness(done, mu):
     """k A W / mu (J), worn volume times hardness where this is constant, from the friction work W that wears."""
     values = done.summary["parameters"]
-    return K * values["wear_acceleration"] / mu * done.summary["balances"]["friction"]["worn_by"]
+    k = values["wear_coefficient"] * values["wear_acceleration"]
+    return k / mu * done.summary["balances"]["friction"]["worn_by"]
 
 
 def integral(first, last):
@@ -78,7 +80,7 @@ def assert_wear_follows_own_heat(done, body, volume, *, mu):
     heated = temperature > 650
     assert heated.sum() > 5 and temperature.max() > 700
     assert np.array_equal(heated, volume > 0)
-    scale = K * values["wear_acceleration"] * capacity / (mu * 0.85 * 0.5)
+    scale = values["wear_coefficient"] * values["wear_acceleration"] * capacity / (mu * 0.85 * 0.5)
     exact = scale * integral(650.0, temperature)
     assert volume.sum() == pytest.approx(exact.sum(), rel=5e-3)
     assert volume == pytest.approx(exact, rel=0.02, abs=1e-3 * exact.max())
@@ -91,13 +93,13 @@ def assert_wear_follows_own_heat(done, body, volume, *, mu):
 
 @pytest.fixture(scope="module")
 def in_space(tmp_path_factory):
-    return run("cutting_3d_wear", tmp_path_factory.mktemp("space") / "run", **IN_SPACE)
+    return run("cutting_3d_thermal", tmp_path_factory.mktemp("space") / "run", **IN_SPACE)
 
 
 @pytest.fixture(scope="module")
 def in_space_hot(tmp_path_factory):
     """The same cut with a hot tool, whose heat stays where it arises."""
-    return run("cutting_3d_wear", tmp_path_factory.mktemp("hot") / "run", **IN_SPACE, **HOT, conduction="false",
+    return run("cutting_3d_thermal", tmp_path_factory.mktemp("hot") / "run", **IN_SPACE, **HOT, conduction="false",
                tool_specific_heat=0.6 * LIGHT, heat_sharing="equal")
 
 
@@ -133,9 +135,10 @@ def test_heat_does_not_change_the_cut_in_space_but_a_hot_tool_wears_more(in_spac
 def test_heat_in_space_stopped_and_resumed_equals_never_stopped(in_space, tmp_path):
     values = {**IN_SPACE, "checkpoint_interval": 0.01}
     # In the cut, whose steps are one chunk: the checkpoint is that of the end of the lowering.
-    stopped = interrupt_script(script("cutting_3d_wear"), tmp_path / "cut", signal.SIGKILL, 2, **values)
+    stopped = interrupt_script(script("cutting_3d_thermal"), tmp_path / "cut", signal.SIGKILL, 2, **values)
     assert stopped.code == -signal.SIGKILL
-    assert_as_if_never_stopped(run("cutting_3d_wear", tmp_path / "cut", "--resume", **values), in_space, "cracks.csv")
+    resumed = run("cutting_3d_thermal", tmp_path / "cut", "--resume", **values)
+    assert_as_if_never_stopped(resumed, in_space, "cracks.csv")
     assert np.array_equal(*(last_snapshot(out)["temperature"] for out in (in_space.out, tmp_path / "cut")))
 
 
@@ -145,12 +148,12 @@ def test_heat_in_space_stopped_and_resumed_equals_never_stopped(in_space, tmp_pa
 @pytest.fixture(scope="module")
 def of_segments(tmp_path_factory):
     """Heat is on by default; the surface recedes over thermal nodes."""
-    return run("tooth_cycles", tmp_path_factory.mktemp("segments") / "run", "--vtk", **OF_SEGMENTS)
+    return run("segments_thermal", tmp_path_factory.mktemp("segments") / "run", "--vtk", **OF_SEGMENTS)
 
 
 @pytest.fixture(scope="module")
 def of_segments_hot(tmp_path_factory):
-    return run("tooth_cycles", tmp_path_factory.mktemp("hot") / "run", **{**OF_SEGMENTS, "wear_period": 10}, **HOT,
+    return run("segments_thermal", tmp_path_factory.mktemp("hot") / "run", **{**OF_SEGMENTS, "wear_period": 10}, **HOT,
                reshape="false", conduction="false", tool_specific_heat=3 * LIGHT, heat_sharing="equal",
                heat_period=2e-6)
 
@@ -208,9 +211,9 @@ def test_a_hot_tool_of_segments_wears_more_per_work(of_segments, of_segments_hot
 
 def test_heat_of_segments_stopped_and_resumed_equals_never_stopped(of_segments, tmp_path):
     values = {**OF_SEGMENTS, "checkpoint_interval": 0.01}
-    stopped = interrupt_script(script("tooth_cycles"), tmp_path / "cut", signal.SIGTERM, 2, **values)
+    stopped = interrupt_script(script("segments_thermal"), tmp_path / "cut", signal.SIGTERM, 2, **values)
     assert stopped.code == 128 + signal.SIGTERM
-    resumed = run("tooth_cycles", tmp_path / "cut", "--resume", **values)
+    resumed = run("segments_thermal", tmp_path / "cut", "--resume", **values)
     assert_as_if_never_stopped(resumed, of_segments, "cracks.csv", "wear_profile.csv")
     for name in ("temperature", "tool_vertices"):
         assert np.array_equal(*(last_snapshot(out)[name] for out in (of_segments.out, tmp_path / "cut")))
@@ -220,7 +223,8 @@ def test_heat_of_segments_stopped_and_resumed_equals_never_stopped(of_segments, 
 
 
 def test_a_tool_of_triangles_heats_up_and_wears_by_its_hardness(tmp_path):
-    values = {**IN_SPACE, **BLOCK_OF_TRIANGLES, "wear_acceleration": 300, "reshape": "true"}
+    values = {**IN_SPACE, **BLOCK_OF_TRIANGLES, "heat": "true", "hardness": 0, "wear_coefficient": 0.01,
+              "wear_acceleration": 300, "reshape": "true"}
     values.pop("tool_radius")
     done = run("cutting_3d_triangles", tmp_path / "run", **values)
     assert_balances_close(done)
@@ -245,7 +249,7 @@ CRUSHED = dict(width=0.03, height=0.02, tooth_height=0.018, tooth_width=0.012, d
 def test_a_padova_rock_is_cut(tmp_path):
     """Python gives the forces of all bonds at every step; bonds flow before they break, and some break in shear, by
     eta (c - Fn): a brittle one, with Rt = 1e6 N, never does here."""
-    done = run("tooth_cycles", tmp_path / "run", **{**SMALL, **CRUSHED, "bond_law": "padova", "start_up": 3.5e-4})
+    done = run("padova_cut", tmp_path / "run", **{**SMALL, **CRUSHED, "start_up": 3.5e-4})
     assert_balances_close(done)
     assert value(done, "tensile_cracks") > 10 and value(done, "shear_cracks") > 1
     assert done.summary["balances"]["energy"]["bond_breaking"] > 1.01 * cracks(done)["energy"].sum()
@@ -272,7 +276,7 @@ def test_under_tension_only_shear_alone_breaks_no_bond(tmp_path):
 def test_segments_without_heat_wear_by_the_hardness_at_their_temperature(tmp_path):
     values = {**OF_SEGMENTS, "start_up": 4e-4, "cycles": 0, "heat": "false", "reshape": "false"}
     values.pop("emissivity")
-    cold, hot = (run("tooth_cycles", tmp_path / str(kelvin), **values, tool_temperature=kelvin)
+    cold, hot = (run("segments_thermal", tmp_path / str(kelvin), **values, tool_temperature=kelvin)
                  for kelvin in (300, 800))
     assert_balances_close(hot)
     friction = [done.summary["balances"]["friction"]["worn_by"] for done in (cold, hot)]

@@ -16,6 +16,8 @@ BOX = dict(particles=300, fill_ratio=0.75, opening=5, thickness=2, friction=0.4,
            time_step_fraction=0.4, snapshot_period=0.2)
 FLASK = dict(particles=250, radius_min=2.4e-3, radius_max=2.6e-3, tube_diameter=0.014, tube_axis=9e-3, depth=0.018,
              width=0.026, tube_length=0.03, settling=0.1, vibrating=0.05, rolling_resistance=0, snapshot_period=0.05)
+SHAKEN = {**FLASK, "rolling_resistance": 0.02, "amplitude": 3e-4, "vibrating": 0.4, "checkpoint_interval": 0.01,
+          "report": "false"}
 
 
 def run(script, out, *flags, **values):
@@ -92,6 +94,18 @@ def test_energy_is_kept_where_nothing_can_take_it(tmp_path):
     assert mass[-1] == pytest.approx(value(done, "tube_mass"), rel=0.2) and mass[-1] > 2 * mass[8] > 0
     assert value(done, "peak_acceleration") == pytest.approx(3e-4 * (100 * math.pi)**2 / 9.81)
     assert "The tube" in (done.out / "report.html").read_text(encoding="utf-8")
+
+
+def test_a_vibrating_tube_stopped_and_resumed_equals_never_stopped(tmp_path):
+    never, out = run(TUBE, tmp_path / "never", **SHAKEN), tmp_path / "out"
+    stopped = interrupt_script(TUBE, out, signal.SIGKILL, 3, **SHAKEN)
+    assert stopped.code == -signal.SIGKILL
+    with np.load(next(out.glob("checkpoint/*/state.npz"))) as state:
+        # The vibration's phase goes on, too: the checkpoint is in the middle of it.
+        assert state["scene/stage"] == 1 and state["scene/engines/recorder/rows"] > 15
+    assert_as_if_never_stopped(run(TUBE, out, "--resume", **SHAKEN), never)
+    assert np.array_equal(*(last_snapshot(folder)["grain_positions"] for folder in (never.out, out)))
+    assert value(never, "tube_mass") > value(never, "tube_mass_by_gravity") > 0
 
 
 def test_without_amplitude_gravity_acts_alone(tmp_path):
