@@ -37,8 +37,8 @@ def start(script, words=(), threads=1, **options):
     """Start a YADE script, its output captured. It may import from its own folder, as under Python."""
     environment = {**os.environ, "PYTHONPATH": f"{ROOT}{os.pathsep}{Path(script).parent}"}
     return subprocess.Popen(["yade", "-n", "-x", f"-j{threads}", str(script), *words], stdout=subprocess.PIPE,
-                            stderr=subprocess.PIPE, stdin=subprocess.DEVNULL, encoding="utf-8",
-                            **{"env": environment, **options})
+                            stdin=subprocess.DEVNULL, encoding="utf-8",
+                            **{"env": environment, "stderr": subprocess.PIPE, **options})
 
 
 def finish(process, out=None):

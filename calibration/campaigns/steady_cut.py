@@ -281,7 +281,8 @@ def of_case(folder, case):
     way = [run.parameter("cut_length") + run.parameter("ramp_length") for run in runs]
     minutes = [run.summary["wall_time"]["total"] / 60 for run in runs]
     missed = [run.balances["energy"]["residual"] / run.balances["energy"]["tool_work"] for run in runs]
-    return {**found, "each": each, "packings": len(runs), "cost": sum(minutes) / sum(way), "missed": max(map(abs, missed)),
+    return {**found, "each": each, "packings": len(runs), "cost": sum(minutes) / sum(way),
+            "missed": max(map(abs, missed)),
             "way": sum(run.parameter("cut_length") / run.parameter("depth_of_cut") - BEGIN for run in runs)}
 
 
@@ -502,16 +503,16 @@ def write(folder):
              "in slip and damage, those alone that broke in tension, and in crushing. Energy missed: residual of the "
              "balance over the tool's work, of the worst packing. Minutes on a shared core.", "", *causes(found)]
     if changed := changes(found):
-        lines += ["", "## What each changes in the same packings", "", "Mean ± standard error of the differences in the "
-                  f"same packing; told: beyond {TOLD:g} standard errors, which chance exceeds once in twenty cases of "
-                  "three packings.", "",
+        lines += ["", "## What each changes in the same packings", "", "Mean ± standard error of the differences in "
+                  f"the same packing; told: beyond {TOLD:g} standard errors, which chance exceeds once in twenty cases "
+                  "of three packings.", "",
                   *generated.table(["", "packings in common", *CHANGED, "told"], changed)]
     if judged := envelope(folder, found):
         lines += ["", "## Against the envelope", "",
                   *generated.table(["cut", "", "range", "basis", "ours", "verdict"], [*judged, *relations(found)])]
     if compared := theories(folder, found):
-        lines += ["", "## Theories", "", "Both are known to be unreliable in absolute value. Strengths are those of the "
-                  "rock's laboratory; Nishimatsu's with the exponent recalled of his own tests.", "",
+        lines += ["", "## Theories", "", "Both are known to be unreliable in absolute value. Strengths are those of "
+                  "the rock's laboratory; Nishimatsu's with the exponent recalled of his own tests.", "",
                   *generated.table(["", "mean peak Fc, kN/m", "Evans", "Nishimatsu", "thrust / cutting", "Nishimatsu"],
                                    compared)]
     for case, name in DRAWN.items():

@@ -270,7 +270,11 @@ class Run:
         line = (f"{name:9s} {100 * done / total:5.1f} %  t = {1e3 * scene.time:.2f} ms  {scene.output.progress()}, "
                 f"{int(left) // 60} min {int(left) % 60:02d} s left")
         terminal = sys.stdout.isatty()
-        print(f"\r{line}\033[K" if terminal else line, end="" if terminal else "\n", flush=True)
+        try:
+            print(f"\r{line}\033[K" if terminal else line, end="" if terminal else "\n", flush=True)
+        except BrokenPipeError:
+            # Nobody reads on, as behind `| head`.
+            sys.stdout = open(os.devnull, "w", encoding="utf-8")
 
     def _snapshot(self):
         with replacing(self.folder / "snapshots" / f"{self.snapshots:04d}.npz") as file:

@@ -1,10 +1,11 @@
 """What a run does around its scene, seen from outside of its process."""
 import os
+import subprocess
 
 import pytest
 
 from rockwear.run import checkpoint
-from tests.running import ROOT, run_script
+from tests.running import ROOT, run_script, start
 
 SCRIPTS = ROOT / "tests/run/scripts"
 
@@ -60,3 +61,13 @@ def test_help_shows_the_groups(tmp_path):
     sections = {block.splitlines()[0]: block for block in run.stdout.split("\n\n")}
     assert "--density kg/m3" in sections["oscillator:"] and "(default 1000 kg/m3; ours)" in sections["oscillator:"]
     assert "--out TEXT" in sections["output:"]
+
+
+def test_a_run_that_nobody_reads_any_more_goes_on_to_its_end(tmp_path):
+    """As behind `| head -4`: its pipe is closed."""
+    process = start(ROOT / "yade_scripts/sliding_wear.py", ["--report", "false", "--out", str(tmp_path / "out")],
+                    stderr=subprocess.DEVNULL)
+    # YADE itself, which speaks before, would not survive.
+    assert any("XMLRPC" in line for line in iter(process.stdout.readline, ""))
+    process.stdout.close()
+    assert process.wait(120) == 0 and (tmp_path / "out/summary.json").exists()
