@@ -17,6 +17,7 @@ import numpy as np
 from calibration import generated
 from calibration.campaigns.runs import Runs, command_line, wait_for
 from rockwear.kernels import cutting_theory, steady_record
+from rockwear.kernels.checks import ParameterError
 from rockwear.kernels.cut_sizes import cut_sizes
 from rockwear.kernels.cutting_envelope import (
     ENERGY_TARGET, OVERBREAK_TARGET, PEAKS_TARGET, RELATIONS, SCRATCH_DEPTHS, SCRATCH_ENERGY, SCRATCH_STRENGTH,
@@ -88,8 +89,8 @@ ROCKS = {
         "fracture energy 30": dict(bond_fracture_energy=30.0),
         "fracture energy 5": dict(bond_fracture_energy=5.0)}.items()}}
 """Rocks that are cut as the base is, at other depths of cut too: finer discs make another rock."""
-HALVED, STRONGER, BENTHEIM, MEDIUM, PADOVA = (f"{EIGHT}, {name}" for name in (
-    "strengths halved", "strengths times 1.4", "bentheim", "medium_sandstone", "p_sandstone"))
+HALVED, STRONGER, BENTHEIM, MEDIUM, PADOVA, NO_GRAINS = (f"{EIGHT}, {name}" for name in (
+    "strengths halved", "strengths times 1.4", "bentheim", "medium_sandstone", "p_sandstone", "no grains"))
 PULLED = BASE, HALVED, STRONGER, BENTHEIM, MEDIUM, PADOVA
 """Rocks that are pulled in the laboratory, too; the others have the bonds of the base."""
 CHANGES = {
@@ -133,6 +134,8 @@ TOOL_FRICTION = 0.3
 """Of steel on rock, the default of the cut."""
 NISHIMATSU = 11.3, -0.18
 """His exponent of the stress on the shear plane, and its change per degree of rake (Nishimatsu 1972, recalled)."""
+ACCURACY = 0.1
+"""Of the mean force, for which the length of a cut is given."""
 MOVED = 0.15
 """Part of specific energy and friction work by which a setting may move them."""
 JUDGED = BASE, EIGHT, FINEST, HALVED, STRONGER, BENTHEIM, MEDIUM, PADOVA, *map(depth_case, DEPTHS)
@@ -406,6 +409,21 @@ def changes(found):
     return rows
 
 
+def lengths_needed(found):
+    """Rows of a table: how well one cut knows the mean force, by packings and by its record, and how many depths of cut
+    it takes to know it to ACCURACY; the larger error counts, for that of three packings is itself not known well."""
+    rows = []
+    for case in (*SETTINGS, NO_GRAINS):
+        row = found.get(case)
+        if row and len(row["each"]) > 2:
+            forces = np.array([one["force"] for one in row["each"].values()])
+            errors = np.array([forces[:, 0].std(ddof=1), np.sqrt(np.mean(forces[:, 1]**2))]) / forces[:, 0].mean()
+            depths = row["way"] / len(forces)
+            rows.append([case, f"{depths:.0f}", *(f"{100 * error:.0f} %" for error in errors),
+                         f"{depths * (errors.max() / ACCURACY)**2:.0f}"])
+    return rows
+
+
 def theories(folder, found):
     """Rows of a table: peaks beside those of Evans and Nishimatsu, and thrust over cutting force beside the latter."""
     rows, friction = [], math.atan(TOOL_FRICTION)
@@ -419,11 +437,16 @@ def theories(folder, found):
         cohesion, angle = cutting_theory.mohr_coulomb(compressive_strength=1e6 * row["ucs"].value,
                                                       tensile_strength=tension.mean())
         evans = cutting_theory.evans(tensile_strength=tension.mean(), depth=depth, rake=rake)
-        cutting, thrust = cutting_theory.nishimatsu(
-            shear_strength=cohesion, internal_friction=angle, depth=depth, rake=rake, friction_angle=friction,
-            distribution=NISHIMATSU[0] + NISHIMATSU[1] * math.degrees(rake))
-        rows.append([case, shown(row["peak"]), f"{1e-3 * evans:.0f}", f"{1e-3 * cutting:.0f}", shown(row["thrust"]),
-                     f"{thrust / cutting:.2f}"])
+        try:
+            cutting, thrust = cutting_theory.nishimatsu(
+                shear_strength=cohesion, internal_friction=angle, depth=depth, rake=rake, friction_angle=friction,
+                distribution=NISHIMATSU[0] + NISHIMATSU[1] * math.degrees(rake))
+        except ParameterError:
+            # Friction in the rock and on so blunt a tool leaves no plane to slide on.
+            cutting, thrust = math.nan, math.nan
+        rows.append([case, shown(row["peak"]), f"{1e-3 * evans:.0f}",
+                     shown(Measured(1e-3 * cutting, math.nan)), shown(row["thrust"]),
+                     shown(Measured(thrust / cutting, math.nan))])
     return rows
 
 
@@ -507,6 +530,10 @@ def write(folder):
                   f"the same packing; told: beyond {TOLD:g} standard errors, which chance exceeds once in twenty cases "
                   "of three packings.", "",
                   *generated.table(["", "packings in common", *CHANGED, "told"], changed)]
+    if needed := lengths_needed(found):
+        lines += ["", "## How long a cut has to be", "", "How far the mean force of one cut is off, by the scatter of "
+                  f"packings and by its own record, and how many depths of cut tell it to {100 * ACCURACY:g} %.", "",
+                  *generated.table(["", "depths of one cut", "packings", "record", "depths needed"], needed)]
     if judged := envelope(folder, found):
         lines += ["", "## Against the envelope", "",
                   *generated.table(["cut", "", "range", "basis", "ours", "verdict"], [*judged, *relations(found)])]
