@@ -13,6 +13,7 @@ import sys
 
 import matplotlib
 import numpy as np
+from scipy import stats
 
 from calibration import generated
 from calibration.campaigns.runs import Runs, command_line, wait_for
@@ -31,7 +32,8 @@ from rockwear.report.views import cut, steady
 
 SCRIPT, UNIAXIAL = "yade_scripts/steady_cut.py", "yade_scripts/uniaxial.py"
 BASE, EIGHT, FINEST = "base", "eight discs", "32 discs"
-SEEDS = 1, 2, 3
+SEEDS, MORE_SEEDS = (1, 2, 3), (1, 2, 3, 4, 5, 6)
+"""Packings of each case, and of those at FLATS_DEPTH."""
 BEGIN = 3
 """Depths of cut that do not count: the tool has passed the slope at which it begins, which is 2.7 long."""
 LOAD = 0.1
@@ -45,7 +47,9 @@ SHORT = 0.03
 """m of way with small discs."""
 SLOWER = dict(velocity=4.0, snapshot_period=1e-3)
 """Half as fast, with as many pictures over the way."""
-DEPTHS = 0.3125e-3, 1.25e-3, 0.02
+FLATS_DEPTH = 1.25e-3
+"""m, at which the groove is left near the tool's path: a flat rubs there, as on scratches."""
+DEPTHS = 0.3125e-3, FLATS_DEPTH, 0.02
 """m of other cuts, half as fast, all lengths of which follow their depth: 16 and 4 times less, and 4 times more."""
 BOX = dict(width=0.02, height=0.01)
 """Of the laboratory, m; loaded along its length; as much larger or smaller as the discs are."""
@@ -115,10 +119,9 @@ CHANGES = {
 }
 """How else the rock of eight discs is cut: a twentieth of the cost of sixteen."""
 CUTS = {**{f"{EIGHT}, {name}": change for name, change in CHANGES.items()},
-        **{f"{depth_case(1.25e-3)}, {name}": CHANGES[name] for name in ("wear flat 1 mm", "wear flat 2 mm")},
+        **{f"{depth_case(FLATS_DEPTH)}, {name}": CHANGES[name] for name in ("wear flat 1 mm", "wear flat 2 mm")},
         **{name: CHANGES[name] for name in ("wear flat 2 mm", "velocity 4 m/s")}}
-"""How else the rock that a case begins with is cut, or that of the base. At 1.25 mm the groove is left near the tool's
-path: a flat rubs there, as on scratches."""
+"""How else the rock that a case begins with is cut, or that of the base."""
 DRAWN = {BASE: "steady_cut", FINEST: "steady_cut_finest"}
 """{case: name of its figures}."""
 SETTINGS = BASE, FINEST, EIGHT, *(f"{EIGHT}, {name}" for name in (
@@ -128,8 +131,8 @@ SETTINGS = BASE, FINEST, EIGHT, *(f"{EIGHT}, {name}" for name in (
 CHANGED = {"mean Fc, kN/m": "force", "mean Fn, kN/m": "pressed", "peak / mean": "peaks",
            "overbreak / depth": "overbreak", "way under load": "loaded", "friction work, kN/m": "friction"}
 """{heading: quantity} of which it is said how a cause changes them."""
-TOLD = 4.3
-"""Standard errors of the mean of three differences beyond which 5 % lie (Student's t, two degrees of freedom)."""
+CHANCE = 0.05
+"""How often chance alone may make a change that counts as told."""
 TOOL_FRICTION = 0.3
 """Of steel on rock, the default of the cut."""
 NISHIMATSU = 11.3, -0.18
@@ -164,6 +167,11 @@ def rock_of(case):
     return max((rock for rock in ROCKS if f"{case}, ".startswith(f"{rock}, ")), key=len, default=BASE)
 
 
+def seeds_of(case):
+    """Packings that are cut."""
+    return MORE_SEEDS if depth_of(case) == FLATS_DEPTH else SEEDS
+
+
 def cut_of(case, seed):
     """Parameters of a cut."""
     length = dict(cut_length=SHORT) if case == FINEST else {}
@@ -184,7 +192,7 @@ def test_of(rock, test, seed):
 def plan(cases):
     """{folder: (script, parameters)}, the base and one packing of each case first."""
     found = {}
-    for case, seed in sorted(((case, seed) for seed in SEEDS for case in cases),
+    for case, seed in sorted(((case, seed) for case in cases for seed in seeds_of(case)),
                              key=lambda job: (job[0] != BASE, job[1], CASES.index(job[0]))):
         rock = rock_of(case)
         found[f"cut/{slug(case, seed)}"] = SCRIPT, cut_of(case, seed)
@@ -195,7 +203,7 @@ def plan(cases):
 
 def runs_of(folder, *words):
     """{seed: RunFolder} of the packings that exist."""
-    places = {seed: folder / slug(*words, seed) for seed in SEEDS}
+    places = {seed: folder / slug(*words, seed) for seed in MORE_SEEDS}
     return {seed: RunFolder(place) for seed, place in places.items() if (place / "summary.json").exists()}
 
 
@@ -401,8 +409,8 @@ def changes(found):
         if known:
             by = {words: (difference(row, known, what), known[what].value) for words, what in CHANGED.items()}
             common = len(row["each"].keys() & known["each"].keys())
-            told = [words for words, (change, _) in by.items()
-                    if common > 2 and abs(change.value) > TOLD * change.standard_error]
+            least = stats.t.ppf(1 - 0.5 * CHANCE, common - 1) if common > 2 else math.inf
+            told = [words for words, (change, _) in by.items() if abs(change.value) > least * change.standard_error]
             rows.append([case, common,
                          *(f"{shown(change)} ({100 * change.value / value:+.0f} %)" for change, value in by.values()),
                          ", ".join(told) or "–"])
@@ -527,8 +535,8 @@ def write(folder):
              "balance over the tool's work, of the worst packing. Minutes on a shared core.", "", *causes(found)]
     if changed := changes(found):
         lines += ["", "## What each changes in the same packings", "", "Mean ± standard error of the differences in "
-                  f"the same packing; told: beyond {TOLD:g} standard errors, which chance exceeds once in twenty cases "
-                  "of three packings.", "",
+                  "the same packing; told: so many standard errors that chance makes as large a change once in "
+                  f"{1 / CHANCE:g} cases (Student's t).", "",
                   *generated.table(["", "packings in common", *CHANGED, "told"], changed)]
     if needed := lengths_needed(found):
         lines += ["", "## How long a cut has to be", "", "How far the mean force of one cut is off, by the scatter of "
