@@ -15,7 +15,7 @@ import matplotlib
 import numpy as np
 
 from calibration import generated
-from calibration.campaigns import steady_cut
+from calibration.campaigns import steady_cut_cases as cases, steady_cut_numbers as numbers
 from calibration.campaigns.runs import Runs, command_line, wait_for
 from rockwear.kernels import cutting_theory, steady_record
 from rockwear.model import rock_file
@@ -28,7 +28,7 @@ SHAPES = 3
 """Number of outlines, the new one included."""
 SEEDS = 1, 2, 3, 5, 6, 7
 """Packings that every tool cuts; in the fourth it wears."""
-CUT = {**steady_cut.CUT, **steady_cut.ROCKS[steady_cut.EIGHT], "report": "false"}
+CUT = {**cases.CUT, **cases.ROCKS[cases.EIGHT], "report": "false"}
 RAKE = CUT.pop("rake")
 WORN = {**CUT, "rake": RAKE, "seed": 4, "heat": "true", "wear_acceleration": 3000, "snapshot_period": 1e-4}
 """The cut in which the tool wears."""
@@ -104,7 +104,7 @@ def differences(tools):
         more = {name: [one[name].value - new[seed][name].value for seed, one in tool["each"].items() if seed in new]
                 for name in QUANTITIES}
         rows.append([f"{1e6 * tool['lost']:.2f} mm²", *(
-            steady_cut.shown(steady_record.sample_mean(values)) for values in more.values())])
+            numbers.shown(steady_record.sample_mean(values)) for values in more.values())])
     return rows
 
 
@@ -113,7 +113,7 @@ def write(folder, tools):
     with matplotlib.rc_context(plots.STYLE):
         figure(tools).savefig(folder / "sharp_and_worn.png")
     rows = [[f"{1e6 * tool['lost']:.2f} mm²", f"{math.degrees(tool['rake']):.0f}°", len(tool["each"]),
-             *(steady_cut.shown(tool[name]) for name in QUANTITIES), f"{tool['evans']:.0f} kN/m"] for tool in tools]
+             *(numbers.shown(tool[name]) for name in QUANTITIES), f"{tool['evans']:.0f} kN/m"] for tool in tools]
     with open(folder / "sharp_and_worn.csv", "w", encoding="utf-8", newline="") as file:
         csv.writer(file).writerows([["lost [m2]", "packing", *QUANTITIES], *(
             [tool["lost"], seed, *(one[name].value for name in QUANTITIES)]
@@ -143,9 +143,9 @@ def shapes(folder):
 def start(folder, **where):
     """Run what is missing; where: options of Runs. -> 1 where a run failed, else 0."""
     with Runs(folder, keep=True, **where) as runs:
-        if wait_for({"worn": runs.start("worn", steady_cut.SCRIPT, **WORN)}, lambda name, run: name):
+        if wait_for({"worn": runs.start("worn", cases.SCRIPT, **WORN)}, lambda name, run: name):
             return 1
-        jobs = {(number, seed): runs.start(f"tool_{number}-{seed}", steady_cut.SCRIPT,
+        jobs = {(number, seed): runs.start(f"tool_{number}-{seed}", cases.SCRIPT,
                                            **{**CUT, "seed": seed},
                                            **{"outline": tool["path"]} if number else {"rake": RAKE})
                 for seed in SEEDS for number, tool in enumerate(shapes(folder))}
@@ -158,11 +158,11 @@ def main(folder, read=False, **where):
     failed, tools = 0 if read else start(folder, **where), []
     for number, tool in enumerate(shapes(folder) if not failed else ()):
         places = {seed: folder / f"tool_{number}-{seed}" for seed in SEEDS}
-        each = {seed: steady_cut.of_run(RunFolder(place)) for seed, place in places.items()
+        each = {seed: numbers.of_run(RunFolder(place)) for seed, place in places.items()
                 if (place / "summary.json").exists()}
         if each:
             tools.append({**tool, "each": each, **{
-                name: steady_cut.over_packings([one[name] for one in each.values()]) for name in QUANTITIES}})
+                name: numbers.over_packings([one[name] for one in each.values()]) for name in QUANTITIES}})
     if tools:
         print(write(folder, tools))
     return failed

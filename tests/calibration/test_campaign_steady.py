@@ -6,7 +6,8 @@ import math
 import numpy as np
 import pytest
 
-from calibration.campaigns import steady_cut
+from calibration.campaigns import steady_cut_cases as cases, steady_cut_figures as figures
+from calibration.campaigns import steady_cut_numbers as numbers, steady_cut_tables as tables
 from rockwear.kernels.steady_record import Measured
 from rockwear.report.folder import RunFolder
 
@@ -14,31 +15,31 @@ DEPTH, FORCE, THRUST, FRICTION = 5e-3, 30e3, 18e3, 3e3
 
 
 def test_the_plan_changes_one_cause_at_a_time_and_measures_every_rock():
-    plan = steady_cut.plan(steady_cut.CASES)
-    base = steady_cut.cut_of("base", 1)
-    for case in steady_cut.CASES:
-        if case in steady_cut.CUTS:
-            assert {**base, **steady_cut.CUTS[case]}.items() >= steady_cut.ROCK.items()
-        for seed in steady_cut.SEEDS:
-            assert f"cut/{steady_cut.slug(case, seed)}" in plan
-            assert f"lab/{steady_cut.slug(steady_cut.rock_of(case), 'compression', seed)}" in plan
+    plan = cases.plan(cases.CASES)
+    base = cases.cut_of("base", 1)
+    for case in cases.CASES:
+        if case in cases.CUTS:
+            assert {**base, **cases.CUTS[case]}.items() >= cases.ROCK.items()
+        for seed in cases.SEEDS:
+            assert f"cut/{cases.slug(case, seed)}" in plan
+            assert f"lab/{cases.slug(cases.rock_of(case), 'compression', seed)}" in plan
     script, values = plan["cut/eight_discs__no_grains-2"]
-    changed = {name for name in values if values[name] != steady_cut.cut_of("eight discs", 2).get(name)}
+    changed = {name for name in values if values[name] != cases.cut_of("eight discs", 2).get(name)}
     assert changed == {"grain_edge"}
     assert [name.rpartition("-")[0] for name in plan][:9:3] == ["cut/base"] * 3
 
 
 def test_a_few_packings_have_the_errors_of_their_records_and_three_their_scatter():
     ones = [Measured(1.0, 0.3), Measured(2.0, 0.4)]
-    assert steady_cut.over_packings(ones) == pytest.approx((1.5, 0.25))
-    three = steady_cut.over_packings([*ones, Measured(6.0, math.nan), Measured(math.nan, math.nan)])
+    assert numbers.over_packings(ones) == pytest.approx((1.5, 0.25))
+    three = numbers.over_packings([*ones, Measured(6.0, math.nan), Measured(math.nan, math.nan)])
     assert three == pytest.approx((3.0, math.sqrt(7 / 3)))
-    assert steady_cut.shown(three) == "3 ± 1.5" and steady_cut.shown(Measured(math.nan, 1.0)) == "–"
+    assert numbers.shown(three) == "3 ± 1.5" and numbers.shown(Measured(math.nan, 1.0)) == "–"
 
 
 def test_what_comes_before_the_end_of_the_slope_does_not_count(tmp_path):
     write_run(tmp_path / "cut/base-1")
-    found = steady_cut.of_run(RunFolder(tmp_path / "cut/base-1"))
+    found = numbers.of_run(RunFolder(tmp_path / "cut/base-1"))
     assert found["force"].value == pytest.approx(1e-3 * FORCE) and found["energy"].value == pytest.approx(FORCE / DEPTH)
     assert found["thrust"].value == pytest.approx(THRUST / FORCE)
     assert found["friction"].value == pytest.approx(1e-3 * FRICTION)
@@ -54,28 +55,28 @@ def test_chips_that_break_abreast_at_places_of_their_own_have_lower_peaks(tmp_pa
         force = FORCE * np.maximum(1 - abs((way + shift) % 0.01 - 5e-3) / 6.25e-4, 0.0)
         rows(tmp_path / name / "history.csv", "distance cutting_force", way, force)
     one, other = (RunFolder(tmp_path / name) for name in ("a", "b"))
-    alone, both = steady_cut.abreast([one]), steady_cut.abreast([one, other])
+    alone, both = numbers.abreast([one]), numbers.abreast([one, other])
     # Mean: a sixteenth of the peak, of which the running mean over a tenth of a mm loses some 4 %.
     assert alone.value == pytest.approx(16, rel=0.06) and both.value == pytest.approx(0.5 * alone.value, rel=0.02)
-    assert steady_cut.abreast([one, one]).value == pytest.approx(alone.value)
+    assert numbers.abreast([one, one]).value == pytest.approx(alone.value)
 
 
 def test_the_way_under_load_is_not_known_without_peaks():
     distance = np.linspace(0, 0.06, 601)
     half = np.where(distance > 0.03, FORCE, 0.0)
-    assert steady_cut.under_load(distance, half, FORCE, 0.0).value == pytest.approx(0.5, abs=0.01)
-    assert math.isnan(steady_cut.under_load(distance, half, math.nan, 0.0).value)
+    assert numbers.under_load(distance, half, FORCE, 0.0).value == pytest.approx(0.5, abs=0.01)
+    assert math.isnan(numbers.under_load(distance, half, math.nan, 0.0).value)
 
 
 def test_specific_energy_is_over_the_strength_of_the_same_rock(tmp_path):
     write_run(tmp_path / "cut/base-1")
     for seed, ucs in ((1, 40e6), (2, 60e6)):
         write(tmp_path / "lab" / f"base-compression-{seed}", {"peak_stress": ucs})
-    row = steady_cut.of_case(tmp_path, "base")
+    row = numbers.of_case(tmp_path, "base")
     assert row["ucs"].value == pytest.approx(50.0) and row["energy"].value == pytest.approx(FORCE / DEPTH / 50e6)
     assert row["packings"] == 1 and row["way"] == pytest.approx(9) and row["cost"] == pytest.approx(2 / 0.065)
-    assert steady_cut.of_case(tmp_path, "eight discs, no grains") is None
-    line, = (line for line in steady_cut.causes({"base": row}) if "| base | 1 | 9 | 50" in line)
+    assert numbers.of_case(tmp_path, "eight discs, no grains") is None
+    line, = (line for line in tables.causes({"base": row}) if "| base | 1 | 9 | 50" in line)
     assert line.endswith("| 5.0 | 31 |")
 
 
@@ -84,17 +85,17 @@ def test_cuts_are_judged_at_their_own_depth_and_strength(tmp_path):
         write_run(tmp_path / f"cut/{case}-1")
     for rock in ("base", "eight_discs__depth_20_mm"):
         write(tmp_path / f"lab/{rock}-compression-1", {"peak_stress": 50e6})
-    assert not steady_cut.envelope(tmp_path, {"base": steady_cut.of_case(tmp_path, "base")})
+    assert not tables.envelope(tmp_path, {"base": numbers.of_case(tmp_path, "base")})
     write(tmp_path / "lab/base-tension-1", {"tensile_strength": 4e6})
-    found = {case: steady_cut.of_case(tmp_path, case) for case in ("base", "eight discs, depth 20 mm")}
-    judged = {tuple(row[:2]): row[2:] for row in steady_cut.envelope(tmp_path, found)}
+    found = {case: numbers.of_case(tmp_path, case) for case in ("base", "eight discs, depth 20 mm")}
+    judged = {tuple(row[:2]): row[2:] for row in tables.envelope(tmp_path, found)}
     # 30 kN/m at a UCS of 50 MPa.
     assert judged["base", "mean cutting force"][::3] == ["66 to 144 kN/m", "below"]
     assert judged["base", "specific energy"][::3] == ["5 to 20 MJ/m³", "inside"]
     assert ("eight discs, depth 20 mm", "mean cutting force") not in judged
     assert not any("abreast" in case for case, _ in judged)
     found["base"]["abreast"] = Measured(3.0, 0.2)
-    more = steady_cut.envelope(tmp_path, found)
+    more = tables.envelope(tmp_path, found)
     assert [row[5] for row in more if row[0] == "base, packings abreast"] == ["inside", "inside"]
     assert judged["eight discs, depth 20 mm", "overbreak"][3] == "inside"
 
@@ -109,7 +110,7 @@ def test_what_cuts_tell_together():
                  "rake 15°": row(40.0 - 0.6 * 20, 4.0),
                  "rake -15°": row(40.0 + 0.6 * 10, 4.0), "wear flat 1 mm": row(60.0, 4.0, 80.0)}.items()}}
     rows = {(case, words.split(", over")[0]): (ours, verdict)
-            for case, words, _, _, ours, verdict in steady_cut.relations(found)}
+            for case, words, _, _, ours, verdict in tables.relations(found)}
     # Another rock's cuts do not count.
     assert rows["eight discs", "mean cutting force over depth, 1 to 20 mm, UCS 48 MPa"] == ("0.8 ± 0.13", "inside")
     assert rows["eight discs", "mean cutting force over depth, scratch"] == ("1 ± 0.24", "inside")
@@ -120,38 +121,38 @@ def test_what_cuts_tell_together():
     # 40 kN/m more over 50 MPa times 1 mm; half as much in the cutting force.
     assert rows["eight discs, wear flat 1 mm", "thrust that a wear flat of 1 or 2 mm adds"] == ("0.8 ± 0.085", "inside")
     assert rows["eight discs, wear flat 1 mm", "cutting force that a wear flat adds"] == ("0.5 ± 0.15", "inside")
-    assert not steady_cut.relations({"eight discs, depth 20 mm": row(80.0, 8.0)})
+    assert not tables.relations({"eight discs, depth 20 mm": row(80.0, 8.0)})
     found["eight discs, depth 20 mm"] = row(500.0, math.nan)
-    assert {case: ours for case, words, _, _, ours, _ in steady_cut.relations(found) if "20 mm" in words} == {
+    assert {case: ours for case, words, _, _, ours, _ in tables.relations(found) if "20 mm" in words} == {
         "eight discs": "0.8 ± 0.13"}
 
 
 def of_packings(**values):
     """A row of made-up packings: {quantity: its value in each}."""
     each = {seed: {name: Measured(one[k], 5.0) for name, one in values.items()}
-            for k, seed in enumerate(steady_cut.SEEDS)}
-    return {"each": each, **{name: steady_cut.over_packings([row[name] for row in each.values()]) for name in values}}
+            for k, seed in enumerate(cases.SEEDS)}
+    return {"each": each, **{name: numbers.over_packings([row[name] for row in each.values()]) for name in values}}
 
 
 def test_a_cause_is_judged_by_what_it_changes_in_each_packing():
     """Packings differ by far more than the cause, which adds 3, 4 and 5 kN/m to the force and nothing to the rest."""
-    same = {what: [1.0, 2.0, 3.0] for what in steady_cut.CHANGED.values()}
+    same = {what: [1.0, 2.0, 3.0] for what in tables.CHANGED.values()}
     found = {"eight discs": of_packings(**{**same, "force": [10.0, 40.0, 90.0]}),
              "eight discs, rake 15°": of_packings(**{**same, "force": [14.0, 43.0, 95.0]})}
-    assert steady_cut.difference(found["eight discs, rake 15°"], found["eight discs"], "force") == (
+    assert numbers.difference(found["eight discs, rake 15°"], found["eight discs"], "force") == (
         pytest.approx(4.0), pytest.approx(3**-0.5))
-    row, = steady_cut.changes(found)
+    row, = tables.changes(found)
     assert row[:3] == ["eight discs, rake 15°", 3, "4 ± 0.58 (+9 %)"] and row[-1] == "mean Fc, kN/m"
     # Of fewer packings nothing is told.
     del found["eight discs"]["each"][1]
-    row, = steady_cut.changes(found)
+    row, = tables.changes(found)
     assert row[1] == 2 and row[-1] == "–"
 
 
 def test_a_cut_has_to_be_as_long_as_its_packings_or_its_record_ask():
     """Packings of 30, 40, 50 kN/m scatter by 25 %, records say 5 of 40: for 10 % six times the nine depths of each."""
     row = {**of_packings(force=[30.0, 40.0, 50.0]), "way": 27}
-    assert steady_cut.lengths_needed({"eight discs": row, "base": {**of_packings(force=[40.0] * 3), "way": 27}}) == [
+    assert tables.lengths_needed({"eight discs": row, "base": {**of_packings(force=[40.0] * 3), "way": 27}}) == [
         ["base", "9", "0 %", "12 %", "14"], ["eight discs", "9", "25 %", "12 %", "56"]]
 
 
@@ -161,14 +162,14 @@ def test_a_cut_has_to_be_as_long_as_its_packings_or_its_record_ask():
     ("eight discs, depth 1.2 mm, wear flat 1 mm", "eight discs, depth 1.2 mm"), ("base", None), ("eight discs", None),
     ("eight discs, depth 20 mm", None)])
 def test_each_case_differs_in_one_cause_from_one_other(case, other):
-    assert case in steady_cut.CASES and steady_cut.changed_from(case) == other
+    assert case in cases.CASES and cases.changed_from(case) == other
 
 
 def test_theories_stand_beside_cuts_of_other_rocks_depths_and_rakes(tmp_path):
     write(tmp_path / "lab/base-tension-1", {"tensile_strength": 4e6})
     row = {"ucs": Measured(40.0, 2.0), "peak": Measured(200.0, 10.0), "thrust": Measured(0.9, 0.1)}
     names = "eight discs", "eight discs, rake 15°", "eight discs, rake -15°", "eight discs, wear flat 1 mm"
-    found = steady_cut.theories(tmp_path, {name: row for name in names})
+    found = tables.theories(tmp_path, {name: row for name in names})
     assert [line[0] for line in found] == [*names[:3]]
     # A wedge of 90 + 5 degrees: 2 * 4 MPa * 5 mm * sin(47.5) / (1 - sin(47.5)); friction of 0.3 on a rake of -5.
     assert found[0][1:3] == ["200 ± 10", "112"] and found[0][5] == f"{math.tan(math.atan(0.3) + math.radians(5)):.3g}"
@@ -181,7 +182,7 @@ def test_the_figure_over_the_discs_has_what_is_there():
     row = {name: Measured(value, error) for name, value, error in (
         ("energy", 0.12, 0.02), ("peaks", 5.0, math.nan), ("overbreak", 0.5, 0.1), ("thrust", 0.7, 0.1))}
     found = {"base": {**row, "cost": 120.0}, "eight discs": {**row, "energy": Measured(0.1, 0.03), "cost": 20.0}}
-    energy, *others = steady_cut.resolution(found).axes
+    energy, *others = figures.resolution(found).axes
     points = energy.lines[0].get_xydata()
     assert points.tolist() == [[8, 0.1], [16, 0.12]] and len(others) == 3
     assert [one.get_text() for one in energy.get_xticklabels()] == ["8 discs\n20 min/m", "16 discs\n120 min/m"]
@@ -190,25 +191,25 @@ def test_the_figure_over_the_discs_has_what_is_there():
 def test_the_figure_over_the_depth_has_cuts_that_differ_in_size_alone():
     row = {name: Measured(0.1, 0.02) for name in ("energy", "peaks", "overbreak", "thrust")}
     found = {"base": row, "eight discs, bentheim": row,
-             **{case: {**row, "energy": Measured(0.1 * k, 0.02)} for k, case in enumerate(steady_cut.AT_DEPTHS)}}
-    energy = steady_cut.over_depth(found).axes[0]
+             **{case: {**row, "energy": Measured(0.1 * k, 0.02)} for k, case in enumerate(cases.AT_DEPTHS)}}
+    energy = figures.over_depth(found).axes[0]
     points = next(line for line in energy.lines if line.get_marker() == "o").get_xydata()
     assert points == pytest.approx(np.array([[0.3125, 0.0], [1.25, 0.1], [5.0, 0.2], [20.0, 0.3]]))
 
 
 def test_a_cut_of_another_size_is_of_a_rock_that_is_crushed_in_its_own_discs():
-    case = steady_cut.depth_case(1.25e-3)
-    cut, lab = steady_cut.cut_of(case, 1), steady_cut.test_of(case, "compression", 1)
+    case = cases.depth_case(1.25e-3)
+    cut, lab = cases.cut_of(case, 1), cases.test_of(case, "compression", 1)
     assert cut["cut_length"] == pytest.approx(0.015) and cut["tip_radius"] == pytest.approx(1.25e-4)
     assert lab["radius_max"] == pytest.approx(0.6 * 1.25e-3 / 8) and lab["width"] == pytest.approx(0.01)
-    assert not steady_cut.OF_THE_CUT - {"snapshot_period"} & set(lab)
+    assert not cases.OF_THE_CUT - {"snapshot_period"} & set(lab)
 
 
 def test_settings_are_compared_with_eight_discs_over_what_they_cost():
     row = {"force": Measured(40.0, 4.0), "friction": Measured(4.0, math.nan), "cost": 20.0}
     found = {"eight discs": row, "eight discs, velocity 4 m/s": {**row, "force": Measured(30.0, 2.0), "cost": 40.0},
              "eight discs, rake 15°": row}
-    energy, friction = steady_cut.price(found).axes
+    energy, friction = figures.price(found).axes
     points = [tuple(line.get_xydata()[0]) for line in energy.lines if line.get_marker() == "o"]
     assert points == [(20.0, 1.0), (40.0, 0.75)]
     assert [words.get_text() for words in energy.get_legend().get_texts()] == ["eight discs", "velocity 4 m/s"]
@@ -227,7 +228,7 @@ def write_run(folder):
     energy = {"tool_work": 2.0, "bond_breaking": 1.0, "rock_crushing": 0.6, "residual": -0.1}
     write(folder, {}, balances={"energy": energy}, wall_time={"total": 120.0})
     distance = np.linspace(0, 0.06, 601)
-    early = distance < steady_cut.BEGIN * DEPTH
+    early = distance < numbers.BEGIN * DEPTH
     rows(folder / "history.csv", "distance cutting_force thrust_force tool_friction", distance,
          np.where(early, 1e6, FORCE), np.where(early, 1e6, THRUST), FRICTION * distance)
     rows(folder / "groove.csv", "x height", distance, np.where(early, -0.02, -2e-3))

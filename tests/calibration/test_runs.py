@@ -14,7 +14,7 @@ import pytest
 from calibration import generated
 from calibration.benchmarks import __main__ as bench
 from calibration.benchmarks import loading_speed, particle_size
-from calibration.campaigns import granular, progress, sharp_and_worn, steady_cut, tip_temperature, uniaxial, wear
+from calibration.campaigns import granular, progress, sharp_and_worn, steady_cut_cases, tip_temperature, uniaxial, wear
 from calibration.campaigns.runs import RunFailed, Runs, Started, finished, wait_for
 from calibration.fitting import rock_fit
 from calibration.fitting.rock_unknowns import Micro
@@ -36,14 +36,14 @@ def started():
     yield from ((script, {**wear.COARSE, **values}) for script, values in wear.CASES.values())
     for values in [*bench.jobs().values(), particle_size.CUT]:
         yield wear.TOOTH, values
-    yield steady_cut.SCRIPT, sharp_and_worn.WORN
+    yield steady_cut_cases.SCRIPT, sharp_and_worn.WORN
     for law, targets in (("brittle", {}), ("coulomb", {}), ("cohesive", {"fracture_toughness": 0.9e6})):
         yield from runs_of_a_fit(law, **targets).started[::3]
     for cases, common, _ in uniaxial.CAMPAIGNS.values():
         yield from ((uniaxial.SCRIPT, {**common, **values, "test": "tension"}) for values in cases.values())
     yield from ((uniaxial.SCRIPT, {**uniaxial.SMALL, **values, "speed": loading_speed.SPEEDS[0]})
                 for values in uniaxial.ROCKS.values())
-    yield from steady_cut.plan(steady_cut.CASES).values()
+    yield from steady_cut_cases.plan(steady_cut_cases.CASES).values()
     yield from ((granular.HEAP, values) for values in granular.heap_values().values())
     yield from ((granular.TUBE, values) for values in granular.tube_values().values())
     for script, values, _ in tip_temperature.SCENES.values():

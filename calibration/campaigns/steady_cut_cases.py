@@ -1,0 +1,154 @@
+"""The steady cuts of campaigns.steady_cut: rocks and causes, and the parameters of each run."""
+from rockwear.kernels.cut_sizes import cut_sizes
+
+SCRIPT, UNIAXIAL = "yade_scripts/steady_cut.py", "yade_scripts/uniaxial.py"
+BASE, EIGHT, FINEST = "base", "eight discs", "32 discs"
+SEEDS, MORE_SEEDS = (1, 2, 3), (1, 2, 3, 4, 5, 6)
+"""Packings of each case, and of those at FLATS_DEPTH."""
+ROCK = dict(rock="crushing_sandstone")
+CUT = dict(depth_of_cut=5e-3, discs_per_depth=16, rake=-5.0, velocity=8.0, snapshot_period=5e-4, cut_length=0.06)
+SHORT = 0.03
+"""m of way with small discs."""
+SLOWER = dict(velocity=4.0, snapshot_period=1e-3)
+"""Half as fast, with as many pictures over the way."""
+FLATS_DEPTH = 1.25e-3
+"""m, at which the groove is left near the tool's path: a flat rubs there, as on scratches."""
+DEPTHS = 0.3125e-3, FLATS_DEPTH, 0.02
+"""m of other cuts, half as fast, all lengths of which follow their depth: 16 and 4 times less, and 4 times more."""
+BOX = dict(width=0.02, height=0.01)
+"""Of the laboratory, m; loaded along its length; as much larger or smaller as the discs are."""
+SPEEDS = {"compression": 0.04, "tension": 0.02}
+"""Of each platen, m/s."""
+
+
+def at_depth(depth):
+    """Parameters of a cut that is as CUT, but for its size. depth: m."""
+    size = depth / CUT["depth_of_cut"]
+    return dict(depth_of_cut=depth, tip_radius=5e-4 * size, cut_length=CUT["cut_length"] * size,
+                velocity=SLOWER["velocity"], snapshot_period=SLOWER["snapshot_period"] * size)
+
+
+def strengths_times(factor):
+    """Bonds of ROCK with strengths so many times theirs, and the same lengths K^2 / strength^2."""
+    return dict(bond_tension=3e6 * factor, bond_cohesion=8.5e6 * factor, bond_crushing=480e6 * factor,
+                bond_fracture_energy=90.0 * factor**2, bond_shear_energy=1000.0 * factor**2)
+
+
+def depth_case(depth):
+    """Name of the case at this depth of cut (m)."""
+    return f"{EIGHT}, depth {1e3 * depth:.2g} mm"
+
+
+ROCKS = {
+    BASE: ROCK,
+    EIGHT: dict(ROCK, discs_per_depth=8),
+    FINEST: dict(ROCK, discs_per_depth=32),
+    **{depth_case(depth): dict(ROCK, discs_per_depth=8, **at_depth(depth)) for depth in DEPTHS},
+    **{f"{EIGHT}, {name}": dict(ROCK, discs_per_depth=8, **change) for name, change in {
+        "strengths halved": strengths_times(0.5),
+        "strengths times 1.4": strengths_times(1.4),
+        "bentheim": dict(rock="bentheim"),
+        "medium_sandstone": dict(rock="medium_sandstone"),
+        "p_sandstone": dict(rock="p_sandstone"),
+        "no crushing": dict(bond_crushing=0.0),
+        "crushing 150 MPa": dict(bond_crushing=150e6),
+        "no grains": dict(grain_edge=0.0),
+        "Weibull modulus 2": dict(weibull_modulus=2.0),
+        "fracture energy 30": dict(bond_fracture_energy=30.0),
+        "fracture energy 5": dict(bond_fracture_energy=5.0)}.items()}}
+"""Rocks that are cut as the base is, at other depths of cut too: finer discs make another rock."""
+HALVED, STRONGER, BENTHEIM, MEDIUM, PADOVA, NO_GRAINS = (f"{EIGHT}, {name}" for name in (
+    "strengths halved", "strengths times 1.4", "bentheim", "medium_sandstone", "p_sandstone", "no grains"))
+PULLED = BASE, HALVED, STRONGER, BENTHEIM, MEDIUM, PADOVA
+"""Rocks that are pulled in the laboratory, too; the others have the bonds of the base."""
+CHANGES = {
+    "velocity 4 m/s": SLOWER,
+    "velocity 2 m/s": dict(velocity=2.0, snapshot_period=2e-3),
+    "4 m/s, window 1.5 times as long": dict(SLOWER, window_behind=0.018, window_ahead=0.06),
+    "4 m/s, window 1.5 times as high": dict(SLOWER, window_height=0.03),
+    "window 5 depths ahead": dict(window_ahead=0.025),
+    "boundary fixed": dict(boundary="fixed"),
+    "ends free": dict(boundary="free"),
+    "rake -15°": dict(rake=-15.0),
+    "rake 15°": dict(rake=15.0),
+    "clearance 20°": dict(clearance=20.0),
+    "tip 0.2 mm": dict(tip_radius=2e-4),
+    "wear flat 1 mm": dict(wear_flat=1e-3),
+    "wear flat 2 mm": dict(wear_flat=2e-3),
+    "tool friction 0.6": dict(tool_mu=0.6),
+    "damping 5000 1/s": dict(background_damping=5e3),
+    "damping 30000 1/s": dict(background_damping=3e4),
+    "grains not damped": dict(grain_quality=0.0),
+    "stiffer tool contact, step 0.8": dict(tool_kn=1e10, tool_kt=1e10, contact_damping=0.2, time_step_fraction=0.8),
+}
+"""How else the rock of eight discs is cut: a twentieth of the cost of sixteen."""
+CUTS = {**{f"{EIGHT}, {name}": change for name, change in CHANGES.items()},
+        **{f"{depth_case(FLATS_DEPTH)}, {name}": CHANGES[name] for name in ("wear flat 1 mm", "wear flat 2 mm")},
+        **{name: CHANGES[name] for name in ("wear flat 2 mm", "velocity 4 m/s")}}
+"""How else the rock that a case begins with is cut, or that of the base."""
+SETTINGS = BASE, FINEST, EIGHT, *(f"{EIGHT}, {name}" for name in (
+    "velocity 4 m/s", "velocity 2 m/s", "4 m/s, window 1.5 times as long", "4 m/s, window 1.5 times as high",
+    "window 5 depths ahead", "boundary fixed", "stiffer tool contact, step 0.8"))
+"""Cases that cut the same rock with the same tool: they differ in what they cost."""
+OF_THE_CUT = {"discs_per_depth", *at_depth(1.0)}
+"""Parameters of a rock of ROCKS that the laboratory does not take."""
+AT_DEPTHS = *map(depth_case, DEPTHS[:2]), f"{EIGHT}, velocity 4 m/s", depth_case(DEPTHS[2])
+"""Cases that differ in size alone, by their depth of cut."""
+CASES = [BASE, *[name for name in ROCKS if name != BASE], *CUTS]
+
+
+def slug(*words):
+    """Name of a folder."""
+    return "-".join("".join(c if c.isalnum() or c in "-." else "_" for c in str(word)) for word in words)
+
+
+def rock_of(case):
+    """The rock that a case cuts."""
+    return max((rock for rock in ROCKS if f"{case}, ".startswith(f"{rock}, ")), key=len, default=BASE)
+
+
+def seeds_of(case):
+    """Packings that are cut."""
+    return MORE_SEEDS if depth_of(case) == FLATS_DEPTH else SEEDS
+
+
+def cut_of(case, seed):
+    """Parameters of a cut."""
+    length = dict(cut_length=SHORT) if case == FINEST else {}
+    return {**CUT, **length, **ROCKS[rock_of(case)], **CUTS.get(case, {}), "seed": seed, "report": "false"}
+
+
+def test_of(rock, test, seed):
+    """Parameters of a laboratory test: discs as in the cut, and a specimen that is as much larger as they are."""
+    sizes, base = (cut_sizes(case["depth_of_cut"], case["discs_per_depth"], velocity=CUT["velocity"])
+                   for case in ({**CUT, **ROCKS[rock]}, CUT))
+    factor = sizes["radius_min"] / base["radius_min"]
+    return {**{name: factor * length for name, length in BOX.items()},
+            **{name: sizes[name] for name in ("radius_min", "radius_max")},
+            **{name: value for name, value in ROCKS[rock].items() if name not in OF_THE_CUT},
+            "test": test, "speed": SPEEDS[test], "seed": seed, "snapshot_period": 1, "report": "false"}
+
+
+def plan(cases):
+    """{folder: (script, parameters)}, the base and one packing of each case first."""
+    found = {}
+    for case, seed in sorted(((case, seed) for case in cases for seed in seeds_of(case)),
+                             key=lambda job: (job[0] != BASE, job[1], CASES.index(job[0]))):
+        rock = rock_of(case)
+        found[f"cut/{slug(case, seed)}"] = SCRIPT, cut_of(case, seed)
+        for test in SPEEDS if rock in PULLED else ["compression"]:
+            found[f"lab/{slug(rock, test, seed)}"] = UNIAXIAL, test_of(rock, test, seed)
+    return found
+
+
+def depth_of(case):
+    """m."""
+    return {**CUT, **ROCKS[rock_of(case)]}["depth_of_cut"]
+
+
+def changed_from(case):
+    """The case that this one differs from in one cause; None for those of other discs or depths."""
+    if case in CUTS:
+        slower = f"{rock_of(case)}, velocity 4 m/s"
+        return slower if case.startswith(f"{rock_of(case)}, 4 m/s, ") else rock_of(case)
+    return EIGHT if case.startswith(f"{EIGHT}, ") and depth_of(case) == depth_of(EIGHT) else None
