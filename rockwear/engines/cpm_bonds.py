@@ -78,6 +78,12 @@ def _behind_normal():
             for name, of in {"radius1": "refR1", "radius2": "refR2", "overlap": "penetrationDepth"}.items()}
 
 
+def _numbers():
+    """{name: (vector, how far behind it)} of a bond, for engines.memory.Places."""
+    return {**{name: ("slipped", behind) for name, behind in _behind_slip().items()},
+            **{name: ("normal", behind) for name, behind in _behind_normal().items()}}
+
+
 def _dot(a, b):
     return np.einsum("ij,ij->j", a, b)
 
@@ -185,9 +191,7 @@ class CpmBonds(BondLog):
             for name in ("kn", "kt", "Rn", "Rt", "mu", "onset", "gone", "slip_end", "coupling"))
         # Lengths (m) of the bonds that are there.
         self.contacts, self.lengths, self.strains = {}, np.zeros(count), None
-        self.places = Places(count, vectors=_VECTORS, groups=_GROUPS,
-                             numbers={name: ("slipped", behind) for name, behind in _behind_slip().items()}
-                             | {name: ("normal", behind) for name, behind in _behind_normal().items()})
+        self.places = Places(count, vectors=_VECTORS, groups=_GROUPS, numbers=_numbers())
         self.there = _Kept(self.places, "looked_at", lambda: np.flatnonzero(self.status != SEPARATED))
         self.slipping = _Kept(self.places, "slip", lambda: np.flatnonzero(self.active & (self.status != SEPARATED)))
         self.crushing = crushing.Crushing(laws=self.laws, hardening=self.law.hardening, places=self.places)

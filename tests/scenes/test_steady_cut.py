@@ -98,7 +98,7 @@ def test_a_cut_ends_once_its_mean_force_is_known(tmp_path):
 
 def test_sizes_follow_the_depth_of_cut_and_the_rock_follows_its_discs(tmp_path):
     given = dict(rock="interlocked_sandstone", depth_of_cut=4e-3, discs_per_depth=4, tooth_width=0.01, cut_length=0.02,
-                 velocity=8.0, report="false")
+                 velocity=8.0, report="false", time_step_fraction=0.45)
     run = run_script(SCRIPT, *arguments(given), "--out", str(tmp_path / "out"), out=tmp_path / "out")
     assert run.code == 0, run.stderr
     values = run.summary["parameters"]
@@ -106,8 +106,9 @@ def test_sizes_follow_the_depth_of_cut_and_the_rock_follows_its_discs(tmp_path):
     # The rock was measured with discs of 0.25 mm and grains of 0.8 mm.
     assert values["grain_edge"] == pytest.approx(8e-4 * 4e-4 / 2.5e-4) and values["tooth_width"] == 0.01
     assert value(run, "window_passed") > 0
+    # At 0.9 of the critical step so few discs miss 2 to 3 %, in half of the step a fifth of one.
     energy = run.summary["balances"]["energy"]
-    assert abs(energy["residual"]) < 0.03 * energy["tool_work"]
+    assert abs(energy["residual"]) < 0.015 * energy["tool_work"]
 
 
 @pytest.mark.parametrize("law", ["brittle", "cohesive", "arc"])

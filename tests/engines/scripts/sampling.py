@@ -8,15 +8,16 @@ import sys
 from unittest import mock
 
 import numpy as np
-from yade import NewtonIntegrator, O
+from yade import Ig2_Sphere_Sphere_ScGeom, NewtonIntegrator, O
 
 from rockwear.engines import base, cpm_bonds
 from rockwear.kernels.bond_laws import Cohesive
+from rockwear.scenes import yade_scene
 
 STEPS = 2000
 LAW = Cohesive(kn=2e10, kt=1e10, bond_tension=1e5, bond_cohesion=2e5, bond_fracture_energy=1.0, mu=0.5)
 
-O.engines = [NewtonIntegrator()]
+O.engines = [yade_scene.bond_loop([Ig2_Sphere_Sphere_ScGeom()]), NewtonIntegrator()]
 bonds = cpm_bonds.CpmBonds(pairs=np.empty((0, 2), int), law=LAW, clock=lambda: O.time)
 base.register([bonds])
 base.insert([bonds])

@@ -29,8 +29,7 @@ def contacts():
     for contact in found:
         for vector in VECTORS.values():
             write(vector(contact), (0.0, 0.0, 0.0))
-    places = memory.Places(COUNT, vectors=VECTORS, groups=cpm_bonds._GROUPS,
-                           numbers={name: ("slipped", behind) for name, behind in cpm_bonds._behind_slip().items()})
+    places = memory.Places(COUNT, vectors=VECTORS, groups=cpm_bonds._GROUPS, numbers=cpm_bonds._numbers())
     places.find(np.array([4, 5, 6]), found[4:])
     places.find(np.arange(4), found[:4])
     return found, places
@@ -156,7 +155,7 @@ def motions():
 
 def refused(**constants):
     """What making the engine of bonds says where memory is laid out in another way; None: it is made."""
-    cpm_bonds._behind_slip.cache_clear()
+    cpm_bonds._behind_slip.cache_clear(), cpm_bonds._behind_normal.cache_clear()
     try:
         with mock.patch.multiple(memory, **constants):
             cpm_bonds.CpmBonds(pairs=np.array([[0, 1]]), law=LAW, clock=lambda: 0.0)
