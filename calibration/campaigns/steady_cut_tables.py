@@ -37,12 +37,17 @@ def causes(found):
          for case, row in found.items()])
 
 
+def tensions(folder, case):
+    """(k,) Pa, tensile strengths of the rock of a case; of the base where its bonds are the base's."""
+    rock = rock_of(case)
+    return strengths(folder, rock if rock in PULLED else BASE, "tension")
+
+
 def envelope(folder, found):
     """Rows of a table: cuts of JUDGED against what is expected of a rock of their strengths."""
     rows = []
     for case in JUDGED:
-        rock = rock_of(case)
-        row, tension = found.get(case), strengths(folder, rock if rock in PULLED else BASE, "tension")
+        row, tension = found.get(case), tensions(folder, case)
         if not row or not len(tension) or not math.isfinite(row["ucs"].value):
             continue
         depth = depth_of(case)
@@ -128,8 +133,7 @@ def theories(folder, found):
     """Rows of a table: peaks beside those of Evans and Nishimatsu, and thrust over cutting force beside the latter."""
     rows, friction = [], math.atan(TOOL_FRICTION)
     for case, row in found.items():
-        rock = rock_of(case)
-        tension = strengths(folder, rock if rock in PULLED else BASE, "tension")
+        tension = tensions(folder, case)
         other_theory = case not in CUTS or "rake" in CUTS[case]
         if not (other_theory and len(tension) and math.isfinite(row["ucs"].value)):
             continue
