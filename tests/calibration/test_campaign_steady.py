@@ -158,7 +158,7 @@ def test_a_cut_has_to_be_as_long_as_its_packings_or_its_record_ask():
 
 @pytest.mark.parametrize("case, other", [
     ("eight discs, rake 15°", "eight discs"), ("eight discs, no grains", "eight discs"), ("wear flat 2 mm", "base"),
-    ("eight discs, 4 m/s, window 1.5 times as long", "eight discs, velocity 4 m/s"),
+    ("eight discs, window 1.5 times as long", "eight discs"),
     ("eight discs, depth 1.2 mm, wear flat 1 mm", "eight discs, depth 1.2 mm"), ("base", None), ("eight discs", None),
     ("eight discs, depth 20 mm", None)])
 def test_each_case_differs_in_one_cause_from_one_other(case, other):
