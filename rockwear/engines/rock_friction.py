@@ -7,8 +7,9 @@ from yade import CpmPhys, InsertionSortCollider, JCFpmPhys, O
 
 from rockwear.engines.access import SLIDING, body_erased, contact_energy, yade_engine, yade_friction_law
 from rockwear.engines.base import FORCES, Engine
+from rockwear.engines.bond_log import SEPARATED
 from rockwear.engines.memory import (
-    MEMORY, WORDS, all_contacts, class_of, contact_columns, contact_layout, in_contact, pointed)
+    MEMORY, WORDS, all_contacts, class_of, contact_columns, contact_layout, in_contact, place, pointed)
 
 
 @cache
@@ -48,9 +49,8 @@ class RockContacts(Engine):
             # YADE would end where it is asked for contacts of an erased body.
             if interaction is None and all(O.bodies[body] for body in pairs[k]):
                 known[k] = O.interactions[pairs[k]]
-        self.held = {place: interaction for place, interaction in zip(places, known) if interaction is not None}
-        self.possible = list(self.held.values())
-        self.places = np.fromiter(self.held, np.int64, len(self.held))
+        self.held = {where: interaction for where, interaction in zip(places, known) if interaction is not None}
+        self._list()
 
     def _possible(self):
         """Places in memory and bodies [(first, second)] of all pairs of rock particles that are no bonds, ordered by
@@ -71,8 +71,24 @@ class RockContacts(Engine):
 
     def _keep_up(self):
         """Bring `possible` up to date, where the collider has run or bonds have parted since."""
-        if self.collider.numAction != self.seen or self.bonds.parted:
+        if self.collider.numAction != self.seen:
             self.find_contacts()
+        elif self.bonds.parted:
+            self._add_parted()
+
+    def _add_parted(self):
+        """Add the pairs of bonds that have parted, where YADE still holds them possible and no new bond is there."""
+        for n in self.bonds.parted:
+            pair = tuple(self.bonds.pairs[n].tolist())
+            if self.bonds.status[n] == SEPARATED and all(O.bodies[i] for i in pair) and O.interactions.has(*pair):
+                interaction = O.interactions[pair]
+                self.held[place(interaction)] = interaction
+        self.bonds.parted.clear()
+        self._list()
+
+    def _list(self):
+        self.possible = list(self.held.values())
+        self.places = np.fromiter(self.held, np.int64, len(self.held))
 
     @property
     def contacts(self):
