@@ -177,7 +177,7 @@ def main(words):
         return 2
     except RunFailed as error:
         print(f"error: {error}", file=sys.stderr)
-        return 1
+        return 2 if error.code == 2 else 1
     written = given.folder / "envelope.json", given.folder / "envelope.png"
     written[0].write_text(json.dumps({"simulated": ours, "laboratory": laboratory}, indent=1) + "\n", encoding="utf-8")
     with matplotlib.rc_context(plots.STYLE):

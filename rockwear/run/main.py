@@ -143,7 +143,7 @@ class Run:
         self.name, self.scene, self.values, self.folder, self.began = name, scene, values, folder, began
         self.identity = identity
         self.stopped_by = None
-        self.snapshots, self.memory = 0, []
+        self.snapshots, self.memory, self.over = 0, [], False
         self.next_snapshot = 0.0
         self.wall_before = 0.0
         self.setup_time = self.loop_time = self.checkpoint_time = 0.0
@@ -161,7 +161,7 @@ class Run:
             state, directory = checkpoint.load(self.folder / "checkpoint", self.identity)
             self.scene.restore(state["scene"], directory, self.folder)
             self.snapshots, self.next_snapshot = int(state["snapshots"]), float(state["next_snapshot"])
-            self.wall_before = float(state["wall_time"])
+            self.wall_before, self.over = float(state["wall_time"]), self.scene.finished
             self._remove_later_snapshots()
         else:
             for old in FOLDERS:
@@ -211,7 +211,8 @@ class Run:
             print(ended)
         try:
             with naming(self.folder):
-                if not code:
+                # A run that had finished before it was resumed has them.
+                if not code and not self.over:
                     self._snapshot()
                     self._checkpoint()
                 warnings = self.scene.output.warnings()

@@ -166,7 +166,8 @@ class HeatBenchmarks(Scene):
 
     def _make_engines(self):
         self.heat = Conduction(network=self.case.network, step=self.case.step)
-        self.recorder = Recorder([self.output.log], period=max(1, self.stages[self.stage][1] // 10),
+        steps = 1 if self.finished else self.stages[self.stage][1]
+        self.recorder = Recorder([self.output.log], period=max(1, steps // 10),
                                  history=self.recorder.history if hasattr(self, "recorder") else None)
         self._register(self.heat, self.recorder)
 

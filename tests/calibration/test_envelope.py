@@ -41,6 +41,11 @@ def test_bad_input_ends_in_one_line_before_the_first_run(tmp_path, capsys, words
     assert not (tmp_path / "out").exists()
 
 
+def test_what_a_run_refuses_is_refused(tmp_path, capsys):
+    assert envelope.main([str(tmp_path / "out"), "--rock", "nowhere", "--seeds", "1", "--confinements", "0,1e6"]) == 2
+    assert capsys.readouterr().err.splitlines()[-1].startswith("error: ")
+
+
 def test_a_folder_that_cannot_be_made_is_refused(tmp_path, capsys):
     (tmp_path / "file").touch()
     assert envelope.main([str(tmp_path / "file/out")]) == 2

@@ -58,7 +58,12 @@ def test_stopped_and_resumed_equals_never_stopped(everything, tmp_path):
     out, options = tmp_path / "out", dict(checkpoint_interval=0.001)
     stopped = interrupt_script(SCRIPT, out, signal.SIGTERM, 30, **{**SMALL, **options})
     assert stopped.code == 128 + signal.SIGTERM
+    resumed = benchmarks(out, "--resume", **options)
+    assert_as_if_never_stopped(resumed, everything, "errors.csv")
+    # A run that has finished makes nothing anew.
+    pictures = sorted((out / "snapshots").iterdir())
     assert_as_if_never_stopped(benchmarks(out, "--resume", **options), everything, "errors.csv")
+    assert sorted((out / "snapshots").iterdir()) == pictures
 
 
 REFUSED = [
