@@ -68,6 +68,8 @@ CHANGES = {
     "velocity 2 m/s": dict(velocity=2.0, snapshot_period=2e-3),
     "window 1.5 times as long": dict(window_behind=0.018, window_ahead=0.06),
     "window 1.5 times as high": dict(window_height=0.03),
+    "window twice as high": dict(window_height=0.04),
+    "fine down to 3 depths": dict(fine_depth=0.015),
     "window 5 depths ahead": dict(window_ahead=0.025),
     "boundary fixed": dict(boundary="fixed"),
     "ends free": dict(boundary="free"),
@@ -90,7 +92,8 @@ CUTS = {**{f"{EIGHT}, {name}": change for name, change in CHANGES.items()},
 """How else the rock that a case begins with is cut, or that of the base."""
 SETTINGS = BASE, FINEST, EIGHT, *(f"{EIGHT}, {name}" for name in (
     "velocity 4 m/s", "velocity 2 m/s", "window 1.5 times as long", "window 1.5 times as high",
-    "window 5 depths ahead", "boundary fixed", "stiffer tool contact, step 0.8"))
+    "window twice as high", "fine down to 3 depths", "window 5 depths ahead", "boundary fixed",
+    "stiffer tool contact, step 0.8"))
 """Cases that cut the same rock with the same tool: they differ in what they cost."""
 OF_THE_CUT = {"discs_per_depth", *at_depth(1.0)}
 """Parameters of a rock of ROCKS that the laboratory does not take."""
