@@ -43,6 +43,12 @@ class BrazilianOutput(SpecimenOutput):
                 "tensile_strength": (float(brazilian.tensile_strength(force, scene.v.diameter)), "Pa"),
                 "first_cracks_radius": (float(off), "of the disc's radius"), "split": (scene.split(), "-")}
 
+    def warnings(self):
+        if self.scene.split():
+            return super().warnings()
+        return [*super().warnings(), "the disc did not split from jaw to jaw: it failed otherwise, if at all, and "
+                "2P/(pi D) is no measure of its tensile strength"]
+
 
 class BrazilianTest(SpecimenTest):
     """A disc between two jaws. values: {name: value} of all GROUPS.
