@@ -88,7 +88,7 @@ CHANGES = {
 """How else the rock of eight discs is cut: a twentieth of the cost of sixteen."""
 CUTS = {**{f"{EIGHT}, {name}": change for name, change in CHANGES.items()},
         **{f"{depth_case(FLATS_DEPTH)}, {name}": CHANGES[name] for name in ("wear flat 1 mm", "wear flat 2 mm")},
-        **{name: CHANGES[name] for name in ("wear flat 2 mm", "velocity 4 m/s")}}
+        **{name: CHANGES[name] for name in ("wear flat 2 mm", "velocity 4 m/s", "window 1.5 times as high")}}
 """How else the rock that a case begins with is cut, or that of the base."""
 SETTINGS = BASE, FINEST, EIGHT, *(f"{EIGHT}, {name}" for name in (
     "velocity 4 m/s", "velocity 2 m/s", "window 1.5 times as long", "window 1.5 times as high",
