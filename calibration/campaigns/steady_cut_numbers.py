@@ -3,7 +3,7 @@ import math
 
 import numpy as np
 
-from calibration.campaigns.steady_cut_cases import CUT, CUTS, MORE_SEEDS, rock_of, slug
+from calibration.campaigns.steady_cut_cases import CUT, CUTS, MORE_SEEDS, changed_from, rock_of, slug
 from rockwear.kernels import steady_record
 from rockwear.kernels.fragments import chip_length
 from rockwear.kernels.groove import groove_results
@@ -129,10 +129,11 @@ def shown(measured):
     return f"{measured.value:.3g}" + (f" ± {error:.2g}" if math.isfinite(error) else "")
 
 
-def forces_over(found, rock, what):
-    """{value: Measured mean force} of the cuts of a rock that differ in one parameter; without the rock's own, none."""
+def forces_over(found, case, what):
+    """{value: Measured mean force} of a case and those that differ from it in one parameter; without the case itself,
+    none."""
     return {CUTS.get(name, {}).get(what, CUT[what]): row["force"] for name, row in found.items()
-            if rock in found and rock_of(name) == rock and (name == rock or what in CUTS[name])
+            if case in found and (name == case or (changed_from(name) == case and what in CUTS.get(name, {})))
             and math.isfinite(row["force"].standard_error)}
 
 

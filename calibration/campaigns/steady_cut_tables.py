@@ -6,7 +6,7 @@ from scipy import stats
 
 from calibration import generated
 from calibration.campaigns.steady_cut_cases import (
-    AT_DEPTHS, BASE, BENTHEIM, CUT, CUTS, DEPTHS, EIGHT, FINEST, HALVED, MEDIUM, NO_GRAINS, PADOVA, PULLED,
+    AT_DEPTHS, BASE, BENTHEIM, CUT, CUTS, DEPTHS, EIGHT, EIGHT_LOW, FINEST, HALVED, MEDIUM, NO_GRAINS, PADOVA, PULLED,
     SETTINGS, STRONGER, changed_from, depth_case, depth_of, rock_of)
 from calibration.campaigns.steady_cut_numbers import COLUMNS, difference, forces_over, scaled, shown, slope, strengths
 from rockwear.kernels import cutting_theory
@@ -78,12 +78,12 @@ def relations(found):
         if sum(map(part, forces)) > 1:
             depths = {depth: force for depth, force in forces.items() if part(depth)}
             ours[name, EIGHT] = exponent(list(depths), *np.array(list(depths.values())).T)
-    for rock in (BASE, EIGHT):
-        rakes = forces_over(found, rock, "rake")
+    for case in (BASE, EIGHT, EIGHT_LOW):
+        rakes = forces_over(found, case, "rake")
         if len(rakes) > 1:
-            ours["force_over_rake", rock] = slope(np.radians(list(rakes)), *1e3 * np.array(list(rakes.values())).T)
+            ours["force_over_rake", case] = slope(np.radians(list(rakes)), *1e3 * np.array(list(rakes.values())).T)
     for name, change in CUTS.items():
-        known = found.get(rock_of(name))
+        known = found.get(changed_from(name))
         if known and name in found and "wear_flat" in change:
             more = {what: difference(found[name], known, what) for what in ("force", "pressed")}
             ours["flat_thrust", name] = scaled(more["pressed"], 1e-3 / (known["ucs"].value * change["wear_flat"]))

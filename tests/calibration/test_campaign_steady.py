@@ -104,7 +104,7 @@ def test_what_cuts_tell_together():
     def row(force, error, thrust=40.0):
         return {"force": Measured(force, error), "pressed": Measured(thrust, 3.0), "ucs": Measured(50.0, 2.0)}
     found = {"base": row(90.0, 4.0), "wear flat 2 mm": row(40.0, math.nan, 70.0), "eight discs": row(40.0, 4.0),
-             "eight discs, velocity 4 m/s": row(40.0, 4.0),
+             "eight discs, velocity 4 m/s, window 4 depths high": row(40.0, 4.0),
              **{f"eight discs, {name}": one for name, one in {
                  "depth 1.2 mm": row(40.0 * 0.25**0.8, 2.0), "depth 0.31 mm": row(40.0 * 0.25**1.8, 1.0),
                  "rake 15°": row(40.0 - 0.6 * 20, 4.0),
@@ -158,7 +158,10 @@ def test_a_cut_has_to_be_as_long_as_its_packings_or_its_record_ask():
 
 @pytest.mark.parametrize("case, other", [
     ("eight discs, rake 15°", "eight discs"), ("eight discs, no grains", "eight discs"), ("wear flat 2 mm", "base"),
-    ("eight discs, window 1.5 times as long", "eight discs"),
+    ("eight discs, window 1.5 times as long", "eight discs"), ("window 4 depths high", "base"),
+    ("eight discs, window 4 depths high", "eight discs"),
+    ("eight discs, rake 15°, window 4 depths high", "eight discs, window 4 depths high"),
+    ("eight discs, fracture energy 30, window 4 depths high", "eight discs, window 4 depths high"),
     ("eight discs, depth 1.2 mm, wear flat 1 mm", "eight discs, depth 1.2 mm"), ("base", None), ("eight discs", None),
     ("eight discs, depth 20 mm", None)])
 def test_each_case_differs_in_one_cause_from_one_other(case, other):

@@ -102,7 +102,7 @@ def test_sizes_follow_the_depth_of_cut_and_the_rock_follows_its_discs(tmp_path):
     run = run_script(SCRIPT, *arguments(given), "--out", str(tmp_path / "out"), out=tmp_path / "out")
     assert run.code == 0, run.stderr
     values = run.summary["parameters"]
-    assert values["radius_min"] == pytest.approx(4e-4) and values["window_height"] == pytest.approx(0.016)
+    assert values["radius_min"] == pytest.approx(4e-4) and values["window_height"] == pytest.approx(0.024)
     # The rock was measured with discs of 0.25 mm and grains of 0.8 mm.
     assert values["grain_edge"] == pytest.approx(8e-4 * 4e-4 / 2.5e-4) and values["tooth_width"] == 0.01
     assert value(run, "window_passed") > 0
