@@ -1,5 +1,5 @@
 """Python engines in YADE's loop: what a visit does, in which phase of the step it comes, what survives a restart."""
-import __main__
+import sys
 from abc import ABC, abstractmethod
 from time import perf_counter
 
@@ -73,7 +73,7 @@ def call(*names):
 
 
 # YADE reads a runner's command anew at every visit, in this namespace: the shorter the faster.
-__main__.visit = call
+sys.modules["__main__"].visit = call
 
 
 def register(engines):
