@@ -60,7 +60,8 @@ def price(found):
         for number, case in enumerate(case for case in SETTINGS if case in found):
             value, error = scaled(found[case][name], 1 / found[EIGHT][name].value)
             axes.errorbar(found[case]["cost"], value, np.nan_to_num(error), fmt="o", color=f"C{number}", capsize=3,
-                          label=case.removeprefix(f"{EIGHT}, ").replace(BASE, "sixteen discs"))
+                          label=case if case.startswith(EIGHT) else
+                          f"sixteen discs, {case}".removesuffix(f", {BASE}"))
         axes.set(xscale="log", ylim=(0, None), xlabel="minutes per metre", title=f"{title} over that of {EIGHT}")
         axes.set_xticks([10, 20, 50, 100, 200, 500], [10, 20, 50, 100, 200, 500])
         axes.minorticks_off()
