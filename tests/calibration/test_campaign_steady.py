@@ -215,7 +215,8 @@ def test_settings_are_compared_with_eight_discs_over_what_they_cost():
     energy, friction = figures.price(found).axes
     points = [tuple(line.get_xydata()[0]) for line in energy.lines if line.get_marker() == "o"]
     assert points == [(20.0, 1.0), (40.0, 0.75)]
-    assert [words.get_text() for words in energy.get_legend().get_texts()] == ["eight discs", "velocity 4 m/s"]
+    assert [words.get_text() for words in energy.get_legend().get_texts()] == [
+        "eight discs", "eight discs, velocity 4 m/s"]
 
 
 def write(folder, results, **entries):
