@@ -28,7 +28,7 @@ SHAPES = 3
 """Number of outlines, the new one included."""
 SEEDS = 1, 2, 3, 5, 6, 7
 """Packings that every tool cuts; in the fourth it wears."""
-CUT = {**cases.CUT, **cases.ROCKS[cases.EIGHT], "report": "false"}
+CUT = {**cases.CUT, **cases.ROCKS[cases.EIGHT], "cut_length": cases.CUT["cut_length"], "report": "false"}
 RAKE = CUT.pop("rake")
 WORN = {**CUT, "rake": RAKE, "seed": 4, "heat": "true", "wear_acceleration": 3000, "snapshot_period": 1e-4}
 """The cut in which the tool wears."""

@@ -4,8 +4,8 @@ from rockwear.kernels.cut_sizes import cut_sizes
 SCRIPT, UNIAXIAL = "yade_scripts/steady_cut.py", "yade_scripts/uniaxial.py"
 BASE, EIGHT, FINEST = "base", "eight discs", "32 discs"
 LOW = "window 4 depths high"
-EIGHT_LOW = f"{EIGHT}, {LOW}"
 """Two thirds of the default. Most causes were told in it, before it was found to be too low."""
+EIGHT_LOW = f"{EIGHT}, {LOW}"
 SEEDS, MORE_SEEDS = (1, 2, 3), (1, 2, 3, 4, 5, 6)
 """Packings of each case, and of those at FLATS_DEPTH."""
 ROCK = dict(rock="crushing_sandstone")
