@@ -1,6 +1,6 @@
 """What bond laws and rock properties do to a rock, and whether a rock stays the same as its discs become finer.
 
-    python3 -m calibration.campaigns.rock_laws DIR [laws|resolution|softening|relations ...] [--read]
+    python3 -m calibration.campaigns.rock_laws DIR [laws|resolution|softening|kept|relations ...] [--read]
         [--jobs N | --scheduler ADDRESS]
 
 N runs at a time (2), or as many as a dask scheduler's workers take; a folder a run; finished runs are not repeated, so
@@ -63,6 +63,13 @@ FINENESS = {1.25: 1.0, 0.6: 0.48, 0.3: 0.24}
 """{mean radius, mm: factor on all lengths of the packing and of its grains}."""
 
 
+KEPT, KEPT_RADIUS = "crushing_sandstone", 0.3125
+"""A rock whose strengths follow the radius, and its mean radius in mm."""
+KEPT_BOX, KEPT_SIZE = dict(width=0.04, height=0.02), 0.02
+"""Of its specimens at that radius; they are as much larger or smaller as the discs are, for it is the radius over the
+length E G_f/strength^2 of the rock that counts."""
+
+
 def at_size(values, factor):
     """Values of a rock whose packing is `factor` times as coarse; stresses and the fracture energy are the rock's."""
     lengths = {"radius_min": 1e-3, "radius_max": 1.5e-3, "bonding_gap": 1e-4,
@@ -77,6 +84,9 @@ CASES = {
                    (1, 2, 3, 4, 5), (0.0,)),
     "softening": ({f"{energy:g} J/m²": dict(ROCK, bond_fracture_energy=energy)
                    for energy in (30.0, 62.5, 125.0, 250.0)}, (1, 2, 3, 4, 5), (0.0,)),
+    "kept": ({f"{KEPT}, r = {factor * KEPT_RADIUS:.3g} mm": dict(
+        rock=KEPT, radius_min=0.25e-3 * factor, radius_max=0.375e-3 * factor) for factor in (2.0, 1.0, 0.5)},
+             (1, 2, 3, 4, 5), (0.0,)),
     "relations": ({f"kt/kn = {ratio:g}, gap {gap:g} mm": dict(ROCK, kt=ratio * 20e9, bonding_gap=1e-3 * gap)
                    for gap in (0.0, 0.1, 0.2) for ratio in (0.05, 0.2, 0.4, 0.7, 1.0)}, (1, 2, 3), (0.0,)),
 }
@@ -90,12 +100,16 @@ HEADS = {"E": "E, GPa", "nu": "ν", "UCS": "UCS, MPa", "tension": "σt, MPa", "r
 def tests(campaign, values, seed):
     """{test: (script, parameters)} of one packing of a rock."""
     confinements, blocked = CASES[campaign][2], values.get("rotation")
-    box, size = {"resolution": (SMALL_BOX, SMALL_SIZE), "softening": (LARGE_BOX, None)}.get(campaign, (BOX, SIZE))
+    box, size = {"resolution": (SMALL_BOX, SMALL_SIZE), "softening": (LARGE_BOX, None),
+                 "kept": (KEPT_BOX, KEPT_SIZE)}.get(campaign, (BOX, SIZE))
+    if campaign == "kept":
+        factor = values["radius_max"] / 0.375e-3
+        box, size = {side: factor * length for side, length in box.items()}, factor * size
     common = dict(values, seed=seed, report="false", snapshot_period=1)
     found = {f"confined {1e-6 * confinement:g}": (CONFINED, dict(common, **box, speed=SPEED, confinement=confinement))
              for confinement in confinements}
     found["tension"] = UNIAXIAL, dict(common, **box, speed=PULL, test="tension")
-    if campaign in ("laws", "resolution") and not blocked:
+    if campaign in ("laws", "resolution", "kept") and not blocked:
         found["toughness"] = TOUGHNESS, dict(common, size=size)
     return found
 
@@ -217,6 +231,7 @@ def draw_resolution(found):
 
 TITLES = {"laws": "What bond laws and rock properties do", "resolution": "The same rock of finer discs",
           "softening": "Fracture energy at the same discs",
+          "kept": "A rock whose strengths follow the radius of its discs",
           "relations": "Dimensionless relations"}
 
 

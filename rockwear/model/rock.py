@@ -231,10 +231,11 @@ class RockAssembly:
             self.grains = grains(self.positions, volume=self.volume, edge=grain_edge, seed=seed, period=self.period)
             within = self.grains[self.pairs[:, 0]] == self.grains[self.pairs[:, 1]]
             require(law.linear, "grain_edge", grain_edge, f"0 with the law {law.name}, which is linear nowhere", "m")
-        scaled = {size: law.scaled(size) for size in np.unique(sizes).tolist()}
+        kinds = list(zip(sizes.tolist(), self.strength_factor.tolist()))
+        scaled = {(size, ratio): law.coarser(ratio).scaled(size) for size, ratio in sorted(set(kinds))}
         if grain_edge:
             inner = _within_grains(law, scaled, *(within_grains or (law.kn, law.kt)))
-        self.laws = [(inner if inside else scaled)[size] for size, inside in zip(sizes.tolist(), within)]
+        self.laws = [(inner if inside else scaled)[kind] for kind, inside in zip(kinds, within)]
         if law.yade_law == "Cpm":
             self._clear_overlaps()
 
@@ -442,9 +443,9 @@ class Block(RockAssembly):
 
 
 def _within_grains(law, scaled, kn, kt):
-    """{size: law} of bonds that do not break, of these stiffnesses (N/m). scaled: {size: law} of those that do."""
+    """{kind: law} of bonds that do not break, of these stiffnesses (N/m). scaled: {kind: law} of those that do."""
     if isinstance(law, Cohesive):
-        return {size: one.unbreakable(kn=kn, kt=kt) for size, one in scaled.items()}
+        return {kind: one.unbreakable(kn=kn, kt=kt) for kind, one in scaled.items()}
     return dict.fromkeys(scaled, ElasticBrittle(kn=kn, kt=kt, Rn=UNBREAKABLE, Rt=UNBREAKABLE, mu=law.mu))
 
 

@@ -258,9 +258,10 @@ class RockPresets(Presets):
 
     declared: {name: Parameter} of what its parameters may be; only: names of those that the scene has a use for, None
     for all. Values hold at the resolution of the file and are converted to the radii of the scene by
-    Parameter.size_power, with the mean of the smallest and largest radius for the size. Elasticity and strength then
-    stay. Toughness stays with the laws whose strengths are in Pa alone: a bond of the damage law takes Rn^2/2 (1/kn +
-    1/H) over its part of the crack to break, which grows with the radius as long as H does not.
+    Parameter.size_power and a power that the file may have, NAME_power, with the mean of the smallest and largest
+    radius for the size. Elasticity and the strengths of bonds then stay, and with such powers those of the rock.
+    Toughness stays with the laws whose strengths are in Pa alone: a bond of the damage law takes Rn^2/2 (1/kn + 1/H)
+    over its part of the crack to break, which grows with the radius as long as H does not.
     """
 
     metavar = "NAME|FILE"
@@ -290,5 +291,6 @@ class RockPresets(Presets):
             require(name in values, "rock", f"{value}, {kind}.parameters.{name} = {found[name]}",
                     "a parameter of this scene (--help lists them)")
         ratio = size({name: values[name] for name in RADII[kind]}) / size(part.resolution)
-        powers = {name: self.declared[name].size_power[DIMENSION[kind]] for name in found}
+        powers = {name: self.declared[name].size_power[DIMENSION[kind]] + found.get(f"{name}_power", 0.0)
+                  for name in found}
         return {name: ratio**powers[name] * found[name] if powers[name] else found[name] for name in found}

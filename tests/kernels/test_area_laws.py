@@ -278,9 +278,18 @@ def test_scaled_by_area(law, lengths):
     assert law.Rn == RN
 
 
+def test_bonds_between_coarser_discs_have_other_strengths_and_the_same_energies():
+    law = Cohesive(**{**BRITTLE, "bond_fracture_energy": ENERGY}, bond_shear_energy=4.0, bond_tension_power=-0.5,
+                   bond_cohesion_power=0.5)
+    coarser = law.coarser(4.0)
+    assert (coarser.Rn, coarser.Rt, coarser.kn) == (0.5 * RN, 2 * RT, KN)
+    assert coarser.fracture_energy() == pytest.approx((ENERGY, 4.0))
+    assert vars(law.coarser(1.0)) == vars(law) and COULOMB.coarser(4.0) is COULOMB
+
+
 @pytest.mark.parametrize("name, bad", [("bond_tension", 0.0), ("bond_cohesion", -1.0), ("mu", -0.1),
                                        ("bond_fracture_energy", 0.0), ("bond_fracture_energy", math.inf),
-                                       ("bond_crushing", -1.0)])
+                                       ("bond_crushing", -1.0), ("bond_cohesion_power", math.nan)])
 def test_refusals_name_the_parameter(name, bad):
     with pytest.raises(ParameterError, match=f"^{name} = "):
         Cohesive(**{**BRITTLE, "bond_fracture_energy": ENERGY, name: bad})

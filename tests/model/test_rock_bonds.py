@@ -120,6 +120,16 @@ def test_laws_by_bond_are_as_strong_as_the_rock_is_graded():
     assert [law.Rn for law in rock.laws] == pytest.approx((5.0 * rock.strength_factor).tolist())
 
 
+def test_strengths_of_graded_rock_follow_the_discs_where_the_law_says_so():
+    rock = Specimen(**{**SPECIMEN, "height": 0.1}, grading_factor=3, fine_depth=0.03)
+    rock.bond(Cohesive(kn=2e10, kt=1e10, bond_tension=7e6, bond_cohesion=20e6, bond_fracture_energy=60.0, mu=0.5,
+                       bond_cohesion_power=0.5))
+    assert rock.strength_factor.max() > 2
+    assert [law.Rn for law in rock.laws] == pytest.approx((7e6 * rock.bond_areas).tolist())
+    assert [law.Rt for law in rock.laws] == pytest.approx(
+        (20e6 * rock.strength_factor**0.5 * rock.bond_areas).tolist())
+
+
 @pytest.mark.parametrize("modulus", [1.5, 4.0, 20.0])
 def test_scatter_has_its_mean_and_its_modulus(modulus):
     rock = lattice(60, 60)

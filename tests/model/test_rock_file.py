@@ -72,6 +72,20 @@ def test_values_are_converted_to_the_radii_of_the_scene_but_not_those_given(tmp_
     assert (found["rock_density"], found["porosity"], found["radius"]) == (2400, 0.38, 12e-3)
 
 
+def test_strengths_follow_the_powers_of_the_file(tmp_path):
+    data = copy.deepcopy(ROCK)
+    data["plane"]["parameters"] = {
+        "bond_law": "cohesive", "kn": 18e9, "kt": 8e9, "mu": 0.8, "bond_tension": 7e6, "bond_cohesion": 2e7,
+        "bond_fracture_energy": 30.0, "bond_tension_power": -1.0, "bond_cohesion_power": 0.5, "bonding_gap": 1e-4,
+        "porosity": 0.1}
+    found = read(PLANE, "--rock", written(tmp_path, data), "--radius_min", 4e-3, "--radius_max", 6e-3)
+    assert [found[name] for name in ("bond_tension", "bond_cohesion", "bond_fracture_energy", "bonding_gap")] == (
+        pytest.approx([7e6 / 4, 4e7, 30.0, 4e-4]))
+    given = read(PLANE, "--rock", written(tmp_path, data), "--radius_min", 4e-3, "--radius_max", 6e-3,
+                 "--bond_cohesion_power", 0)
+    assert given["bond_cohesion"] == 4e7
+
+
 @pytest.mark.parametrize("law, radius, expected", [
     ("damage", 2.0, {"Rn": 2e5, "kn": 2e10, "H": 1e10}), ("padova", 2.0, {
         "padova_m": 2e8 / 2**(1 / 3), "padova_r": -2e5, "padova_eta": 0.8, "padova_cohesion": 2.5e5,

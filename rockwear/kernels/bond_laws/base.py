@@ -111,6 +111,11 @@ class BondLaw(ABC):
     def scaled(self, factor):
         """The law of a bond `factor` times as strong: forces and displacements grow alike, every slope stays."""
 
+    def coarser(self, ratio):
+        """The law of bonds over the same area between particles `ratio` times as large: the same, as long as the law
+        has no other rule for them."""
+        return self
+
     @abstractmethod
     def stiffest(self):
         """(kn, kt), N/m: upper bounds of the stiffness of a bond and of its contact, for the critical time step."""

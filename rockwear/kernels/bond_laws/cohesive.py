@@ -3,7 +3,7 @@ import math
 
 from rockwear.kernels.bond_laws.base import KN, KT, MU, LinearBondLaw
 from rockwear.kernels.bond_laws.coulomb import COHESION, TENSION
-from rockwear.kernels.checks import not_negative, positive, within
+from rockwear.kernels.checks import finite, not_negative, positive, within
 from rockwear.kernels.parameter import Parameter, number, plausible, zero_or
 
 UNBREAKABLE = 1e30
@@ -55,6 +55,9 @@ class Cohesive(LinearBondLaw):
     bond_tension, bond_cohesion  Pa, bond_fracture_energy (G)  J/m2, all > 0: of a bond that stands for 1 m2 of crack,
     see Coulomb; a low cohesion does not cut the tension here. bond_shear_energy (G2)  J/m2; 0: slip does not damage.
     bond_crushing (Rc)  Pa; 0: nothing crushes. crushing_hardening (h)  slope over kn against what stays, 0 to 1.
+    bond_tension_power, bond_cohesion_power  a rock of coarser discs of the same energies is more brittle, as G kn/(Rn^2
+    r) falls with the radius r, and weaker: strengths that grow with so many powers of r keep those of the rock
+    (calibration/results/rock_laws.md).
     Elastic energies Rn^2/(2 kn) and Rt^2/(2 kt) are lower bounds of G and G2. Raises ParameterError.
     """
 
@@ -70,10 +73,14 @@ class Cohesive(LinearBondLaw):
                   Parameter("bond_crushing", 0.0, "Pa", zero_or(1e4, 1e12),
                             "compression at which grains crush, over a bond's area; 0: never"),
                   Parameter("crushing_hardening", 0.05, "", number(0, 1),
-                            "slope of the crushing strength over what a bond is shorter, over kn"), MU)
+                            "slope of the crushing strength over what a bond is shorter, over kn"),
+                  Parameter("bond_tension_power", 0.0, "", number(-2, 2),
+                            "power of the radius with which bond_tension grows where discs are coarser"),
+                  Parameter("bond_cohesion_power", 0.0, "", number(-2, 2),
+                            "power of the radius with which bond_cohesion grows where discs are coarser"), MU)
 
     def __init__(self, *, kn, kt, bond_tension, bond_cohesion, bond_fracture_energy, mu, bond_shear_energy=0.0,
-                 bond_crushing=0.0, crushing_hardening=0.05):
+                 bond_crushing=0.0, crushing_hardening=0.05, bond_tension_power=0.0, bond_cohesion_power=0.0):
         super().__init__(kn=kn, kt=kt, Rn=positive("bond_tension", bond_tension, "Pa"),
                          Rt=positive("bond_cohesion", bond_cohesion, "Pa"), H=math.inf, mu=mu)
         self.end = 2 * positive("bond_fracture_energy", bond_fracture_energy, "J/m2") / self.Rn
@@ -81,10 +88,19 @@ class Cohesive(LinearBondLaw):
         self.end_of_slip = 2 * energy / self.Rt if energy else math.inf
         self.Rc = not_negative("bond_crushing", bond_crushing, "Pa") or math.inf
         self.hardening = within("crushing_hardening", crushing_hardening, 0, 1)
+        self.powers = finite("bond_tension_power", bond_tension_power), finite("bond_cohesion_power",
+                                                                               bond_cohesion_power)
 
     def scaled(self, factor):
         law = super().scaled(factor)
         law.Rc = self.Rc * factor
+        return law
+
+    def coarser(self, ratio):
+        law = self.scaled(1.0)
+        tension, cohesion = (ratio**power for power in self.powers)
+        law.Rn, law.end = self.Rn * tension, self.end / tension
+        law.Rt, law.end_of_slip = self.Rt * cohesion, self.end_of_slip / cohesion
         return law
 
     def unbreakable(self, *, kn, kt):
