@@ -40,7 +40,8 @@ GIVEN = "porosity", "weibull_modulus"
 """Parameters of the rock that are given and not fitted, beside its grains."""
 DENSITIES = 300.0, 10e3
 """kg/m3, of rocks."""
-KEPT = "rotation", "bond_shear_energy", "bond_crushing", "crushing_hardening"
+KEPT = ("rotation", "bond_shear_energy", "bond_crushing", "crushing_hardening", "bond_tension_power",
+        "bond_cohesion_power")
 """Parameters of the rock that the fit begins with, which stay as they are there; the crushing strength where no ductile
 points are fitted."""
 GRAINS = (5.0, 0.0), (11.0, 1.8), (math.inf, 2.2)

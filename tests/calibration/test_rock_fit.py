@@ -166,7 +166,7 @@ def test_first_guesses_are_parameters_of_the_scenes(law):
     found = micro.parameters(micro.first)
     # What is off by default is not fitted.
     of_law = {p.name for p in BOND_LAWS[law].parameters} - {
-        "bond_shear_energy", "bond_crushing", "crushing_hardening"}
+        "bond_shear_energy", "bond_crushing", "crushing_hardening", "bond_tension_power", "bond_cohesion_power"}
     assert set(found) == {"bond_law", "bonding_gap", "porosity", *of_law}
     for name, value in found.items():
         OF_ROCK[name].check(value)
