@@ -2,14 +2,17 @@
 from rockwear.kernels.cut_sizes import cut_sizes
 
 SCRIPT, UNIAXIAL = "yade_scripts/steady_cut.py", "yade_scripts/uniaxial.py"
-BASE, EIGHT, FINEST = "base", "eight discs", "32 discs"
+BASE, FOUR, EIGHT, FINEST = "base", "four discs", "eight discs", "32 discs"
 LOW = "window 4 depths high"
 """Two thirds of the default. Most causes were told in it, before it was found to be too low."""
 EIGHT_LOW = f"{EIGHT}, {LOW}"
+SHARP = "tip 0.2 mm"
+EIGHT_SHARP = f"{EIGHT}, {SHARP}"
 SEEDS, MORE_SEEDS = (1, 2, 3), (1, 2, 3, 4, 5, 6)
 """Packings of each case, and of those at FLATS_DEPTH."""
 ROCK = dict(rock="crushing_sandstone")
-CUT = dict(depth_of_cut=5e-3, discs_per_depth=16, rake=-5.0, velocity=8.0, snapshot_period=5e-4, cut_length=0.06)
+CUT = dict(depth_of_cut=5e-3, discs_per_depth=16, rake=-5.0, velocity=8.0, snapshot_period=5e-4, cut_length=0.06,
+           heat="true")
 SHORT, LONG = 0.03, 0.2
 """m of way with small discs, and with those by which causes are told: 40 depths, so that three packings together know
 the mean force to a tenth."""
@@ -47,6 +50,7 @@ COARSE = dict(ROCK, discs_per_depth=8, cut_length=LONG)
 ROCKS = {
     BASE: ROCK,
     EIGHT: COARSE,
+    FOUR: dict(COARSE, discs_per_depth=4),
     FINEST: dict(ROCK, discs_per_depth=32),
     **{depth_case(depth): {**COARSE, **at_depth(depth)} for depth in DEPTHS},
     **{f"{EIGHT}, {name}": {**COARSE, **change} for name, change in {
@@ -78,7 +82,7 @@ CHANGES = {
     "rake -15°": dict(rake=-15.0),
     "rake 15°": dict(rake=15.0),
     "clearance 20°": dict(clearance=20.0),
-    "tip 0.2 mm": dict(tip_radius=2e-4),
+    SHARP: dict(tip_radius=2e-4),
     "wear flat 1 mm": dict(wear_flat=1e-3),
     "wear flat 2 mm": dict(wear_flat=2e-3),
     "tool friction 0.6": dict(tool_mu=0.6),
@@ -88,14 +92,16 @@ CHANGES = {
     "stiffer tool contact, step 0.8": dict(tool_kn=1e10, tool_kt=1e10, contact_damping=0.2, time_step_fraction=0.8),
 }
 """How else the rock of eight discs is cut: a twentieth of the cost of sixteen."""
-IN_LOW = "velocity 4 m/s", "window 1.5 times as long", "rake -15°", "rake 15°", "wear flat 2 mm"
+RAKES = "rake -15°", "rake 15°"
+IN_LOW = "velocity 4 m/s", "window 1.5 times as long", *RAKES, "wear flat 2 mm"
 CUTS = {**{f"{EIGHT}, {name}": change for name, change in CHANGES.items()},
         **{f"{EIGHT}, {name}, {LOW}": {**CHANGES[name], **CHANGES[LOW]} for name in IN_LOW},
         f"{EIGHT}, fracture energy 30, {LOW}": CHANGES[LOW],
+        **{f"{EIGHT_SHARP}, {name}": {**CHANGES[SHARP], **CHANGES[name]} for name in RAKES},
         **{f"{depth_case(FLATS_DEPTH)}, {name}": CHANGES[name] for name in ("wear flat 1 mm", "wear flat 2 mm")},
         **{name: CHANGES[name] for name in ("wear flat 2 mm", "velocity 4 m/s", LOW)}}
 """How else the rock that a case begins with is cut, or that of the base."""
-SETTINGS = BASE, FINEST, LOW, EIGHT, *(f"{EIGHT}, {name}" for name in (
+SETTINGS = BASE, FINEST, LOW, FOUR, EIGHT, *(f"{EIGHT}, {name}" for name in (
     LOW, "window 8 depths high", f"velocity 4 m/s, {LOW}", f"window 1.5 times as long, {LOW}", "velocity 4 m/s",
     "velocity 2 m/s", "window 1.5 times as long", "window 5 depths ahead", "boundary fixed",
     "stiffer tool contact, step 0.8"))
@@ -160,6 +166,8 @@ def changed_from(case):
     """The case that this one differs from in one cause; None for those of other discs or depths."""
     if case != EIGHT_LOW and case.startswith(EIGHT) and case.endswith(LOW):
         return EIGHT_LOW
+    if case.startswith(f"{EIGHT_SHARP}, "):
+        return EIGHT_SHARP
     if case in CUTS:
         return rock_of(case)
     return EIGHT if case.startswith(f"{EIGHT}, ") and depth_of(case) == depth_of(EIGHT) else None
