@@ -63,10 +63,10 @@ FINENESS = {1.25: 1.0, 0.6: 0.48, 0.3: 0.24}
 """{mean radius, mm: factor on all lengths of the packing and of its grains}."""
 
 
-KEPT, KEPT_RADIUS = "crushing_sandstone", 0.3125
-"""A rock whose strengths follow the radius, and its mean radius in mm."""
+KEPT, KEPT_RADII = "crushing_sandstone", (0.25e-3, 0.375e-3)
+"""A rock whose strengths follow the radius, and the radii (m) of its file."""
 KEPT_BOX, KEPT_SIZE = dict(width=0.04, height=0.02), 0.02
-"""Of its specimens at that radius; they are as much larger or smaller as the discs are, for it is the radius over the
+"""Of its specimens at those radii; they are as much larger or smaller as the discs are, for it is the radius over the
 length E G_f/strength^2 of the rock that counts."""
 
 
@@ -84,8 +84,8 @@ CASES = {
                    (1, 2, 3, 4, 5), (0.0,)),
     "softening": ({f"{energy:g} J/m²": dict(ROCK, bond_fracture_energy=energy)
                    for energy in (30.0, 62.5, 125.0, 250.0)}, (1, 2, 3, 4, 5), (0.0,)),
-    "kept": ({f"{KEPT}, r = {factor * KEPT_RADIUS:.3g} mm": dict(
-        rock=KEPT, radius_min=0.25e-3 * factor, radius_max=0.375e-3 * factor) for factor in (2.0, 1.0, 0.5)},
+    "kept": ({f"{KEPT}, r = {500 * factor * sum(KEPT_RADII):.3g} mm": dict(
+        rock=KEPT, radius_min=factor * KEPT_RADII[0], radius_max=factor * KEPT_RADII[1]) for factor in (2.0, 1.0, 0.5)},
              (1, 2, 3, 4, 5), (0.0,)),
     "relations": ({f"kt/kn = {ratio:g}, gap {gap:g} mm": dict(ROCK, kt=ratio * 20e9, bonding_gap=1e-3 * gap)
                    for gap in (0.0, 0.1, 0.2) for ratio in (0.05, 0.2, 0.4, 0.7, 1.0)}, (1, 2, 3), (0.0,)),
@@ -103,7 +103,7 @@ def tests(campaign, values, seed):
     box, size = {"resolution": (SMALL_BOX, SMALL_SIZE), "softening": (LARGE_BOX, None),
                  "kept": (KEPT_BOX, KEPT_SIZE)}.get(campaign, (BOX, SIZE))
     if campaign == "kept":
-        factor = values["radius_max"] / 0.375e-3
+        factor = values["radius_max"] / KEPT_RADII[1]
         box, size = {side: factor * length for side, length in box.items()}, factor * size
     common = dict(values, seed=seed, report="false", snapshot_period=1)
     found = {f"confined {1e-6 * confinement:g}": (CONFINED, dict(common, **box, speed=SPEED, confinement=confinement))

@@ -5,9 +5,11 @@
 N runs at a time (2), or as many as a dask scheduler's workers take; a folder a run; finished runs are not repeated, so
 that an interrupted campaign resumes. --read starts no run and evaluates those that exist. Each rock is also crushed in
 the laboratory, and the base pulled, in the same packings. Writes into DIR steady_cut.md (tables), steady_cut.csv,
-figures of the base, of the finest discs and over their number (steady_cut*.png), and provenance.json.
+figures of the base, of the finest discs and over their number (steady_cut*.png), steady_settings.json, from which
+calibration.settings chooses, and provenance.json.
 """
 import csv
+import json
 import sys
 
 import matplotlib
@@ -18,7 +20,7 @@ from calibration.campaigns.steady_cut_cases import AT_DEPTHS, BASE, CASES, EIGHT
 from calibration.campaigns.steady_cut_figures import over_depth, price, resolution
 from calibration.campaigns.steady_cut_numbers import BEGIN, LOAD, of_case, runs_of
 from calibration.campaigns.steady_cut_tables import (
-    ACCURACY, CHANCE, CHANGED, causes, changes, envelope, lengths_needed, relations, theories)
+    ACCURACY, CHANCE, CHANGED, causes, changes, envelope, lengths_needed, relations, settings, theories)
 from rockwear.kernels.steady_record import Measured
 from rockwear.report import plane, plots
 from rockwear.report.views import cut, steady
@@ -68,6 +70,8 @@ def write(folder):
             resolution(found).savefig(files[-1])
             files.append(folder / "steady_cut_price.png")
             price(found).savefig(files[-1])
+        files.append(folder / "steady_settings.json")
+        files[-1].write_text(json.dumps(settings(found), indent=1) + "\n", encoding="utf-8")
     if sum(case in found for case in AT_DEPTHS) > 2:
         with matplotlib.rc_context(plots.STYLE):
             files.append(folder / "steady_cut_depths.png")

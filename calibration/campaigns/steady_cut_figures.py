@@ -53,16 +53,18 @@ def over_depth(found):
 
 
 def price(found):
-    """Figure: what a setting moves in specific energy and in friction at the tool, as wear goes, over what it costs."""
-    drawn, panels = plots.canvas(12, 4.4, 1, 2)
-    for axes, (name, title) in zip(panels, {"force": "specific energy", "friction": "friction at the tool"}.items()):
+    """Figure: what a setting moves in specific energy, in friction at the tool, as wear goes, and in the warmth of its
+    tip, over what it costs."""
+    drawn, panels = plots.canvas(15, 4.4, 1, 3)
+    for axes, (name, title) in zip(panels, {"force": "specific energy", "friction": "friction at the tool",
+                                            "temperature": "warmth of the tip"}.items()):
         axes.axhspan(1 - MOVED, 1 + MOVED, color="#dfe8d8")
         for number, case in enumerate(case for case in SETTINGS if case in found):
-            value, error = scaled(found[case][name], 1 / found[EIGHT][name].value)
+            value, error = scaled(found[case][name], 1 / found[BASE][name].value)
             axes.errorbar(found[case]["cost"], value, np.nan_to_num(error), fmt="o", color=f"C{number}", capsize=3,
-                          label=case if case.startswith(EIGHT) else
+                          label=case if "discs" in case else
                           f"sixteen discs, {case}".removesuffix(f", {BASE}"))
-        axes.set(xscale="log", ylim=(0, None), xlabel="minutes per metre", title=f"{title} over that of {EIGHT}")
+        axes.set(xscale="log", ylim=(0, None), xlabel="minutes per metre", title=f"{title} over that of sixteen discs")
         axes.set_xticks([10, 20, 50, 100, 200, 500], [10, 20, 50, 100, 200, 500])
         axes.minorticks_off()
     panels[0].legend(fontsize=8)

@@ -16,11 +16,14 @@ LOAD = 0.1
 """Part of the mean peak above which the tool is under load."""
 IN_TENSION = 1
 """Mode of a crack (cracks.csv) on which more work was spent in tension than in slip."""
+WARM = 12
+"""Depths of cut up to which the tool warms in every cut, however long."""
 COLUMNS = {"specific energy / UCS": "energy", "mean Fc, kN/m": "force", "peak / mean": "peaks",
            "of packings abreast": "abreast",
            "overbreak / depth": "overbreak", "chip length / depth": "chip", "mean Fn, kN/m": "pressed",
            "thrust / cutting": "thrust",
-           "friction work, kN/m": "friction", "way under load": "loaded", "work in bonds": "bonds",
+           "friction work, kN/m": "friction", "tool warmer by, K": "temperature",
+           "way under load": "loaded", "work in bonds": "bonds",
            "in tension": "tension", "in crushing": "crushing"}
 """{heading: quantity}."""
 
@@ -59,10 +62,20 @@ def of_run(run):
             "chip": scaled(chip, 1 / depth), "thrust": steady_record.ratio(distance, pressed, total, begin),
             "pressed": scaled(steady_record.mean(distance, pressed, begin), 1e-3),
             "friction": scaled(steady_record.mean(distance, friction, begin), 1e-3),
+            "temperature": Measured(warmth(run, begin, WARM * depth), math.nan),
             "loaded": under_load(distance, cutting, peaks.mean().value, begin),
             "bonds": Measured(energy["bond_breaking"] / energy["tool_work"], math.nan),
             "tension": Measured(float(work[mode == IN_TENSION].sum()) / energy["tool_work"], math.nan),
             "crushing": Measured(energy["rock_crushing"] / energy["tool_work"], math.nan)}
+
+
+def warmth(run, begin, end):
+    """K by which the tool's hottest place is warmer than the tool was, in the mean of this part of the way (m); nan
+    without heat."""
+    distance = run.column("distance")
+    there = (distance > begin) & (distance <= end)
+    warmer = run.column("tool_temperature_max")[there] - run.parameter("tool_temperature")
+    return float(warmer.mean()) if there.any() else math.nan
 
 
 def abreast(runs):
@@ -129,12 +142,16 @@ def shown(measured):
     return f"{measured.value:.3g}" + (f" ± {error:.2g}" if math.isfinite(error) else "")
 
 
-def forces_over(found, case, what):
-    """{value: Measured mean force} of a case and those that differ from it in one parameter; without the case itself,
-    none."""
-    return {CUTS.get(name, {}).get(what, CUT[what]): row["force"] for name, row in found.items()
-            if case in found and (name == case or (changed_from(name) == case and what in CUTS.get(name, {})))
-            and math.isfinite(row["force"].standard_error)}
+def force_over(found, case, what):
+    """Measured slope of the mean force over one parameter, of a case and those that differ from it in that alone: the
+    mean of the slopes in each of the packings that all have; unknown with fewer than three."""
+    rows = {CUTS.get(name, {}).get(what, CUT[what]): row.get("each", {}) for name, row in found.items()
+            if case in found and (name == case or (changed_from(name) == case and what in CUTS.get(name, {})))}
+    seeds = set.intersection(*map(set, rows.values())) if len(rows) > 1 else ()
+    if len(seeds) < 3:
+        return steady_record.UNKNOWN
+    return steady_record.sample_mean([float(np.polyfit(list(rows), [each[seed]["force"].value for each in
+                                                                    rows.values()], 1)[0]) for seed in sorted(seeds)])
 
 
 def difference(row, other, what):
@@ -146,11 +163,3 @@ def difference(row, other, what):
                                           for seed in seeds])
     one, other = row[what], other[what]
     return Measured(one.value - other.value, math.hypot(one.standard_error, other.standard_error))
-
-
-def slope(x, values, errors):
-    """Measured slope of values (k,) over x (k,), weighted with their standard errors."""
-    weight = errors**-2.0
-    x = x - np.average(x, weights=weight)
-    spread = np.sum(weight * x**2)
-    return Measured(float(np.sum(weight * x * values) / spread), float(spread**-0.5))

@@ -6,9 +6,9 @@ from scipy import stats
 
 from calibration import generated
 from calibration.campaigns.steady_cut_cases import (
-    AT_DEPTHS, BASE, BENTHEIM, CUT, CUTS, DEPTHS, EIGHT, EIGHT_LOW, FINEST, HALVED, MEDIUM, NO_GRAINS, PADOVA, PULLED,
-    SETTINGS, STRONGER, changed_from, depth_case, depth_of, rock_of)
-from calibration.campaigns.steady_cut_numbers import COLUMNS, difference, forces_over, scaled, shown, slope, strengths
+    AT_DEPTHS, BASE, BENTHEIM, CUT, CUTS, DEPTHS, EIGHT, EIGHT_LOW, EIGHT_SHARP, FINEST, HALVED, MEDIUM, NO_GRAINS,
+    PADOVA, PULLED, ROCKS, SETTINGS, STRONGER, changed_from, depth_case, depth_of, rock_of)
+from calibration.campaigns.steady_cut_numbers import COLUMNS, difference, force_over, scaled, shown, strengths
 from rockwear.kernels import cutting_theory
 from rockwear.kernels.checks import ParameterError
 from rockwear.kernels.cutting_envelope import RELATIONS, expected, exponent
@@ -25,6 +25,10 @@ NISHIMATSU = 11.3, -0.18
 """His exponent of the stress on the shear plane, and its change per degree of rake (Nishimatsu 1972, recalled)."""
 ACCURACY = 0.1
 """Of the mean force, for which the length of a cut is given."""
+ERRORS_OF = {"specific_energy": "force", "wear": "friction", "temperature": "temperature"}
+"""{quantity that an accuracy may be asked of: quantity of a row}; wear goes as friction at the tool."""
+OPTIONS, NO_OPTIONS = ("discs_per_depth", "velocity"), ("rock", "cut_length", "snapshot_period")
+"""Parameters that every setting gives, and those of a cut that are none of it."""
 JUDGED = BASE, EIGHT, FINEST, HALVED, STRONGER, BENTHEIM, MEDIUM, PADOVA, *map(depth_case, DEPTHS)
 
 
@@ -78,10 +82,10 @@ def relations(found):
         if sum(map(part, forces)) > 1:
             depths = {depth: force for depth, force in forces.items() if part(depth)}
             ours[name, EIGHT] = exponent(list(depths), *np.array(list(depths.values())).T)
-    for case in (BASE, EIGHT, EIGHT_LOW):
-        rakes = forces_over(found, case, "rake")
-        if len(rakes) > 1:
-            ours["force_over_rake", case] = slope(np.radians(list(rakes)), *1e3 * np.array(list(rakes.values())).T)
+    for case in (BASE, EIGHT, EIGHT_SHARP, EIGHT_LOW):
+        per_degree = force_over(found, case, "rake")
+        if math.isfinite(per_degree.value):
+            ours["force_over_rake", case] = scaled(per_degree, 1e3 * math.degrees(1.0))
     for name, change in CUTS.items():
         known = found.get(changed_from(name))
         if known and name in found and "wear_flat" in change:
@@ -121,12 +125,46 @@ def lengths_needed(found):
     for case in (*SETTINGS, NO_GRAINS):
         row = found.get(case)
         if row and len(row["each"]) > 2:
-            forces = np.array([one["force"] for one in row["each"].values()])
-            errors = np.array([forces[:, 0].std(ddof=1), np.sqrt(np.mean(forces[:, 1]**2))]) / forces[:, 0].mean()
-            depths = row["way"] / len(forces)
+            depths, errors = scatter(row)
             rows.append([case, f"{depths:.0f}", *(f"{100 * error:.0f} %" for error in errors),
                          f"{depths * (errors.max() / ACCURACY)**2:.0f}"])
     return rows
+
+
+def scatter(row):
+    """(depths of one cut, (2,) relative errors of its mean force, by packings and by its record)."""
+    forces = np.array([one["force"] for one in row["each"].values()])
+    errors = np.array([forces[:, 0].std(ddof=1), np.sqrt(np.mean(forces[:, 1]**2))]) / forces[:, 0].mean()
+    return row["way"] / len(forces), errors
+
+
+def settings(found):
+    """What calibration.settings chooses from: [{setting, options, lengths (over the depth of cut), minutes_per_depth,
+    depths_for_tenth, errors {quantity: part by which the base differs}}] of SETTINGS with three packings."""
+    rows = []
+    for case in SETTINGS:
+        row = found.get(case)
+        if row and BASE in found and len(row["each"]) > 2:
+            depths, errors = scatter(row)
+            changed = {**ROCKS[rock_of(case)], **CUTS.get(case, {})}
+            options = {name: changed.get(name, CUT.get(name)) for name in (*OPTIONS, *changed)
+                       if name not in NO_OPTIONS}
+            lengths = {name: options.pop(name) / depth_of(case) for name in tuple(options)
+                       if name.startswith("window_")}
+            rows.append({"setting": case, "options": options, "lengths": lengths,
+                         "minutes_per_depth": row["cost"] * depth_of(case),
+                         "depths_for_tenth": depths * (errors.max() / 0.1)**2,
+                         "errors": {name: _off(row, found[BASE], what) for name, what in ERRORS_OF.items()}})
+    return rows
+
+
+def _off(row, base, what):
+    """Part by which a quantity is off that of the base, with the error of that; None where it is not known."""
+    if row is base:
+        return 0.0
+    change = difference(row, base, what)
+    off = math.hypot(change.value, change.standard_error) / base[what].value
+    return off if math.isfinite(off) else None
 
 
 def theories(folder, found):

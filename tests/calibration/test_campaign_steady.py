@@ -6,8 +6,10 @@ import math
 import numpy as np
 import pytest
 
+from calibration import settings
 from calibration.campaigns import steady_cut_cases as cases, steady_cut_figures as figures
 from calibration.campaigns import steady_cut_numbers as numbers, steady_cut_tables as tables
+from rockwear.kernels.checks import ParameterError
 from rockwear.kernels.steady_record import Measured
 from rockwear.report.folder import RunFolder
 
@@ -45,6 +47,8 @@ def test_what_comes_before_the_end_of_the_slope_does_not_count(tmp_path):
     assert found["friction"].value == pytest.approx(1e-3 * FRICTION)
     assert found["overbreak"].value == pytest.approx(0.4) and found["chip"].value == pytest.approx(2.0)
     assert (found["bonds"].value, found["tension"].value, found["crushing"].value) == (0.5, 0.1, 0.3)
+    # 1 K per mm, from 3 to 12 depths of cut.
+    assert found["temperature"].value == pytest.approx(37.5, abs=0.1)
 
 
 def test_chips_that_break_abreast_at_places_of_their_own_have_lower_peaks(tmp_path):
@@ -111,13 +115,11 @@ def test_what_cuts_tell_together():
                  "rake -15°": row(40.0 + 0.6 * 10, 4.0), "wear flat 1 mm": row(60.0, 4.0, 80.0)}.items()}}
     rows = {(case, words.split(", over")[0]): (ours, verdict)
             for case, words, _, _, ours, verdict in tables.relations(found)}
+    assert ("eight discs", "change of the mean cutting force per rad of rake") not in rows
     # Another rock's cuts do not count.
     assert rows["eight discs", "mean cutting force over depth, 1 to 20 mm, UCS 48 MPa"] == ("0.8 ± 0.13", "inside")
     assert rows["eight discs", "mean cutting force over depth, scratch"] == ("1 ± 0.24", "inside")
     assert ("base", "mean cutting force over depth, scratch") not in rows
-    # -0.6 kN/m per degree.
-    ours, verdict = rows["eight discs", "change of the mean cutting force per rad of rake"]
-    assert ours.startswith("-3.44e+04 ±") and verdict == "inside"
     # 40 kN/m more over 50 MPa times 1 mm; half as much in the cutting force.
     assert rows["eight discs, wear flat 1 mm", "thrust that a wear flat of 1 or 2 mm adds"] == ("0.8 ± 0.085", "inside")
     assert rows["eight discs, wear flat 1 mm", "cutting force that a wear flat adds"] == ("0.5 ± 0.15", "inside")
@@ -125,6 +127,22 @@ def test_what_cuts_tell_together():
     found["eight discs, depth 20 mm"] = row(500.0, math.nan)
     assert {case: ours for case, words, _, _, ours, _ in tables.relations(found) if "20 mm" in words} == {
         "eight discs": "0.8 ± 0.13"}
+
+
+def test_what_the_rake_changes_is_told_packing_by_packing():
+    """-0.5, -0.6 and -0.7 kN/m per degree in packings that differ by more than that."""
+    found = {case: {"each": {seed: {"force": Measured(10.0 * seed - 0.1 * (seed + 4) * rake, 4.0)}
+                             for seed in seeds}, "force": Measured(30.0, 4.0)}
+             for case, rake, seeds in (("eight discs", -5, (1, 2, 3)), ("eight discs, rake 15°", 15, (1, 2, 3, 4)),
+                                       ("eight discs, rake -15°", -15, (1, 2, 3)), ("eight discs, no grains", 0, (1,)))}
+    slope = numbers.force_over(found, "eight discs", "rake")
+    assert slope == pytest.approx((-0.6, 0.1 / math.sqrt(3)))
+    (case, _, _, _, ours, verdict), = tables.relations({name: {**row, "ucs": Measured(50.0, 2.0)}
+                                                        for name, row in found.items()})
+    assert case == "eight discs" and ours.startswith("-3.44e+04 ±") and verdict == "inside"
+    del found["eight discs, rake 15°"]["each"][2]
+    assert math.isnan(numbers.force_over(found, "eight discs", "rake").value)
+    assert math.isnan(numbers.force_over(found, "base", "rake").value)
 
 
 def of_packings(**values):
@@ -208,21 +226,80 @@ def test_a_cut_of_another_size_is_of_a_rock_that_is_crushed_in_its_own_discs():
     assert not cases.OF_THE_CUT - {"snapshot_period"} & set(lab)
 
 
-def test_settings_are_compared_with_eight_discs_over_what_they_cost():
-    row = {"force": Measured(40.0, 4.0), "friction": Measured(4.0, math.nan), "cost": 20.0}
-    found = {"eight discs": row, "eight discs, velocity 4 m/s": {**row, "force": Measured(30.0, 2.0), "cost": 40.0},
-             "eight discs, rake 15°": row}
-    energy, friction = figures.price(found).axes
-    points = [tuple(line.get_xydata()[0]) for line in energy.lines if line.get_marker() == "o"]
-    assert points == [(20.0, 1.0), (40.0, 0.75)]
-    assert [words.get_text() for words in energy.get_legend().get_texts()] == [
-        "eight discs", "eight discs, velocity 4 m/s"]
+def a_setting(force, friction, temperature, cost):
+    """A row with three packings that are alike, of 40 depths each, each of which knows its force to 20 %."""
+    values = {"force": force, "friction": friction, "temperature": temperature}
+    each = {name: Measured(value, 0.2 * value) for name, value in values.items()}
+    means = {name: Measured(value, 0.0) for name, value in values.items()}
+    return {"each": dict.fromkeys((1, 2, 3), each), **means, "cost": cost, "way": 120.0}
+
+
+SETTINGS = {"base": a_setting(40.0, 4.0, 100.0, 200.0), "eight discs": a_setting(30.0, 4.0, 110.0, 20.0),
+            "eight discs, window 8 depths high": a_setting(36.0, 2.0, 105.0, 40.0),
+            "eight discs, rake 15°": a_setting(40.0, 4.0, 100.0, 1.0)}
+
+
+def test_settings_are_compared_with_sixteen_discs_over_what_they_cost():
+    for axes, at in zip(figures.price(SETTINGS).axes, (0.75, 1.0, 1.1)):
+        points = [tuple(line.get_xydata()[0]) for line in axes.lines if line.get_marker() == "o"]
+        assert points[:2] == [(200.0, 1.0), (20.0, pytest.approx(at))] and len(points) == 3
+
+
+def test_settings_to_choose_from_say_what_they_move_and_cost():
+    base, eight, high = tables.settings(SETTINGS)
+    assert base["options"] == {"discs_per_depth": 16, "velocity": 8.0} and set(base["errors"].values()) == {0.0}
+    assert eight["options"]["discs_per_depth"] == 8 and eight["minutes_per_depth"] == pytest.approx(0.1)
+    assert eight["errors"] == pytest.approx({"specific_energy": 0.25, "wear": 0.0, "temperature": 0.1})
+    assert eight["depths_for_tenth"] == pytest.approx(160) and high["lengths"] == {"window_height": 8.0}
+    cold = tables.settings({**SETTINGS, "eight discs": a_setting(30.0, 4.0, math.nan, 20.0)})[1]
+    assert cold["errors"]["temperature"] is None
+
+
+@pytest.mark.parametrize("accuracy, of, setting, off, depths", [
+    (0.5, "specific_energy", "eight discs", 0.25, 20), (0.25, "specific_energy", "eight discs, window 8 depths high",
+                                                         0.1, 31), (0.2, "wear", "eight discs", 0.0, 40),
+    (0.08, "temperature", "eight discs, window 8 depths high", 0.05, 411), (0.04, "temperature", "base", 0.0, 1000),
+    (0.9, "wear", "eight discs", 0.0, 20)])
+def test_the_cheapest_setting_that_is_accurate_enough_is_chosen(accuracy, of, setting, off, depths):
+    row, found, moved, of_length = settings.choose(tables.settings(SETTINGS), accuracy=accuracy, quantities=[of])
+    assert (row["setting"], found) == (setting, depths) and moved == pytest.approx(off)
+    assert math.hypot(moved, of_length) == pytest.approx(accuracy)
+
+
+def test_an_accuracy_that_no_setting_has_is_refused():
+    with pytest.raises(ParameterError, match="^accuracy = 0.05: must be above 0.1, which the best"):
+        settings.choose(tables.settings(SETTINGS)[1:2], accuracy=0.05, quantities=["temperature"])
+
+
+def test_the_command_of_a_setting_has_its_lengths_over_the_depth():
+    row = tables.settings(SETTINGS)[2]
+    command, words = settings.shown(row, 40, 0.1, 0.2, 2e-3)
+    assert command.endswith("--depth_of_cut 0.002 --discs_per_depth 8 --velocity 8 --window_height 0.016 "
+                            "--accuracy 0.2 --cut_length 0.16")
+    assert "off by 10 % beside sixteen discs, by 20 % for its length, some 40 depths of cut; 8 minutes" in words
+
+
+@pytest.mark.parametrize("words, said", [
+    ([], ""), (["--accuracy", "0"], "accuracy = 0"), (["--of", "wear,colour"], "of = wear,colour"),
+    (["--depth_of_cut", "-1"], "depth_of_cut = -1")])
+def test_settings_on_the_command_line(words, said, tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(settings, "MEASURED", tmp_path / "settings.json")
+    settings.MEASURED.write_text(json.dumps(tables.settings(SETTINGS)), encoding="utf-8")
+    assert settings.main(words) == (2 if said else 0)
+    out, error = capsys.readouterr()
+    assert error.startswith(f"error: {said}") and error.count("\n") == 1 if said else "steady_cut.py" in out
+
+
+def test_the_settings_that_come_with_the_package_can_be_chosen_from():
+    rows = json.loads(settings.MEASURED.read_text(encoding="utf-8"))
+    assert settings.choose(rows, accuracy=0.5, quantities=settings.QUANTITIES[:2])
 
 
 def write(folder, results, **entries):
     """A made-up summary."""
     folder.mkdir(parents=True)
-    summary = {"parameters": {"depth_of_cut": DEPTH, "cut_length": 0.06, "ramp_length": 5e-3},
+    parameters = {"depth_of_cut": DEPTH, "cut_length": 0.06, "ramp_length": 5e-3, "tool_temperature": 300.0}
+    summary = {"parameters": parameters,
                "results": {name: {"value": value, "unit": ""} for name, value in results.items()}, **entries}
     (folder / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
 
@@ -233,8 +310,9 @@ def write_run(folder):
     write(folder, {}, balances={"energy": energy}, wall_time={"total": 120.0})
     distance = np.linspace(0, 0.06, 601)
     early = distance < numbers.BEGIN * DEPTH
-    rows(folder / "history.csv", "distance cutting_force thrust_force tool_friction", distance,
-         np.where(early, 1e6, FORCE), np.where(early, 1e6, THRUST), FRICTION * distance)
+    rows(folder / "history.csv", "distance cutting_force thrust_force tool_friction tool_temperature_max",
+         distance, np.where(early, 1e6, FORCE), np.where(early, 1e6, THRUST), FRICTION * distance,
+         300.0 + 1e3 * distance)
     rows(folder / "groove.csv", "x height", distance, np.where(early, -0.02, -2e-3))
     rows(folder / "cracks.csv", "energy mode", [0.15, 0.05, 0.8], [1, 1, 2])
     late = ~early[::50]
