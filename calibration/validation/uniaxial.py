@@ -1,6 +1,7 @@
 """Sections of make validate about the virtual laboratory: three bond laws, a published sandstone, loading speed."""
 from statistics import mean
 
+from calibration.campaigns import rock_laws
 from calibration.campaigns import uniaxial_figures as figures
 from calibration.campaigns.uniaxial import MAIN, ROCKS, SANDSTONE, SCRIPT, SMALL, SOFTENING, TESTS, folder_of
 from calibration.validation.verdicts import Row, Section
@@ -87,6 +88,20 @@ def slow_enough(runs):
     return rows, {}
 
 
+STRENGTHS = {"confined 0": ("UCS", "peak_stress", 0.06), "tension": ("tensile strength", "tensile_strength", 0.04)}
+"""{test of campaigns.rock_laws: (words, result, part by which its mean may differ between radii)}."""
+
+
+def kept(runs):
+    """Strengths of a rock over those at the radii of its file, in the same packings: means of both."""
+    of_file = f"{rock_laws.KEPT}, r = {500 * sum(rock_laws.KEPT_RADII):.3g} mm"
+    return [Row(f"{case}: {words} over that at the file's radii", 1.0,
+                mean(runs[rock_laws.folder_of(case, test, seed)].result(result) for seed in SEEDS) /
+                mean(runs[rock_laws.folder_of(of_file, test, seed)].result(result) for seed in SEEDS), allowed)
+            for case in rock_laws.CASES["kept"][0] if case != of_file
+            for test, (words, result, allowed) in STRENGTHS.items()], {}
+
+
 SECTIONS = [
     Section("Laboratory: the laws of [Rojek 2003, 5.1]", "The three laws; H on 525 discs of three packings.", laws,
             {**{folder_of(case, test, 1): uniaxial(test=test, **values)
@@ -101,4 +116,8 @@ SECTIONS = [
             {slow_run(rock, test, seed, name): uniaxial(test=test, seed=seed, **SMALL, **values, **speed)
              for rock, values in ROCKS.items() for test in TESTS for seed in SEEDS
              for name, speed in (("default", {}), ("slow", {"speed": SLOW}))}),
+    Section("Laboratory: a rock at other radii", f"{rock_laws.KEPT}, discs halved and doubled, three packings; "
+            "calibration/results/rock_laws.md.", kept,
+            {rock_laws.folder_of(case, test, seed): rock_laws.tests("kept", rock, seed)[test]
+             for seed in SEEDS for case, rock in rock_laws.CASES["kept"][0].items() for test in STRENGTHS}),
 ]
