@@ -4,8 +4,7 @@ from rockwear.kernels.cut_sizes import cut_sizes
 SCRIPT, UNIAXIAL = "yade_scripts/steady_cut.py", "yade_scripts/uniaxial.py"
 BASE, FOUR, EIGHT, FINEST = "base", "four discs", "eight discs", "32 discs"
 LOW = "window 4 depths high"
-"""Two thirds of the default. Most causes were told in it, before it was found to be too low."""
-EIGHT_LOW = f"{EIGHT}, {LOW}"
+"""Two thirds of the default."""
 SHARP = "tip 0.2 mm"
 EIGHT_SHARP = f"{EIGHT}, {SHARP}"
 SEEDS, MORE_SEEDS = (1, 2, 3), (1, 2, 3, 4, 5, 6)
@@ -21,7 +20,7 @@ SLOWER = dict(velocity=4.0, snapshot_period=1e-3)
 FLATS_DEPTH = 1.25e-3
 """m, at which the groove is left near the tool's path: a flat rubs there, as on scratches."""
 DEPTHS = 0.3125e-3, FLATS_DEPTH, 0.02
-"""m of other cuts, half as fast, all lengths of which follow their depth: 16 and 4 times less, and 4 times more."""
+"""m of other cuts, all lengths of which follow their depth: 16 and 4 times less, and 4 times more."""
 BOX = dict(width=0.02, height=0.01)
 """Of the laboratory, m; loaded along its length; as much larger or smaller as the discs are."""
 SPEEDS = {"compression": 0.04, "tension": 0.02}
@@ -32,7 +31,7 @@ def at_depth(depth):
     """Parameters of a cut that is as CUT, but for its size. depth: m."""
     size = depth / CUT["depth_of_cut"]
     return dict(depth_of_cut=depth, tip_radius=5e-4 * size, cut_length=CUT["cut_length"] * size,
-                window_height=4 * depth, velocity=SLOWER["velocity"], snapshot_period=SLOWER["snapshot_period"] * size)
+                snapshot_period=CUT["snapshot_period"] * size)
 
 
 def strengths_times(factor):
@@ -93,22 +92,18 @@ CHANGES = {
 }
 """How else the rock of eight discs is cut: a twentieth of the cost of sixteen."""
 RAKES = "rake -15°", "rake 15°"
-IN_LOW = "velocity 4 m/s", "window 1.5 times as long", *RAKES, "wear flat 2 mm"
 CUTS = {**{f"{EIGHT}, {name}": change for name, change in CHANGES.items()},
-        **{f"{EIGHT}, {name}, {LOW}": {**CHANGES[name], **CHANGES[LOW]} for name in IN_LOW},
-        f"{EIGHT}, fracture energy 30, {LOW}": CHANGES[LOW],
         **{f"{EIGHT_SHARP}, {name}": {**CHANGES[SHARP], **CHANGES[name]} for name in RAKES},
         **{f"{depth_case(FLATS_DEPTH)}, {name}": CHANGES[name] for name in ("wear flat 1 mm", "wear flat 2 mm")},
         **{name: CHANGES[name] for name in ("wear flat 2 mm", "velocity 4 m/s", LOW)}}
 """How else the rock that a case begins with is cut, or that of the base."""
 SETTINGS = BASE, FINEST, LOW, FOUR, EIGHT, *(f"{EIGHT}, {name}" for name in (
-    LOW, "window 8 depths high", f"velocity 4 m/s, {LOW}", f"window 1.5 times as long, {LOW}", "velocity 4 m/s",
-    "velocity 2 m/s", "window 1.5 times as long", "window 5 depths ahead", "boundary fixed",
-    "stiffer tool contact, step 0.8"))
+    LOW, "window 8 depths high", "velocity 4 m/s", "velocity 2 m/s", "window 1.5 times as long",
+    "window 5 depths ahead", "boundary fixed", "stiffer tool contact, step 0.8"))
 """Cases that cut the same rock with the same tool: they differ in what they cost."""
 OF_THE_CUT = {"discs_per_depth", *at_depth(1.0)}
 """Parameters of a rock of ROCKS that the laboratory does not take."""
-AT_DEPTHS = *map(depth_case, DEPTHS[:2]), f"{EIGHT}, velocity 4 m/s, {LOW}", depth_case(DEPTHS[2])
+AT_DEPTHS = *map(depth_case, DEPTHS[:2]), EIGHT, depth_case(DEPTHS[2])
 """Cases that differ in size alone, by their depth of cut."""
 CASES = [BASE, *[name for name in ROCKS if name != BASE], *CUTS]
 
@@ -164,8 +159,6 @@ def depth_of(case):
 
 def changed_from(case):
     """The case that this one differs from in one cause; None for those of other discs or depths."""
-    if case != EIGHT_LOW and case.startswith(EIGHT) and case.endswith(LOW):
-        return EIGHT_LOW
     if case.startswith(f"{EIGHT_SHARP}, "):
         return EIGHT_SHARP
     if case in CUTS:

@@ -1,9 +1,11 @@
 """What the runs of campaigns.steady_cut are measured by: a cut, the packings of a case, two cases beside each other."""
+import json
 import math
 
 import numpy as np
 
-from calibration.campaigns.steady_cut_cases import CUT, CUTS, MORE_SEEDS, changed_from, rock_of, slug
+from calibration.campaigns.steady_cut_cases import (
+    BASE, CUT, CUTS, MORE_SEEDS, PULLED, changed_from, rock_of, slug)
 from rockwear.kernels import steady_record
 from rockwear.kernels.fragments import chip_length
 from rockwear.kernels.groove import groove_results
@@ -38,6 +40,12 @@ def strengths(folder, rock, test="compression"):
     """(k,) Pa, of the packings that exist."""
     name = {"compression": "peak_stress", "tension": "tensile_strength"}[test]
     return np.array([run.result(name) for run in runs_of(folder / "lab", rock, test).values()])
+
+
+def tensions(folder, case):
+    """(k,) Pa, tensile strengths of the rock of a case; of the base where its bonds are the base's."""
+    rock = rock_of(case)
+    return strengths(folder, rock if rock in PULLED else BASE, "tension")
 
 
 def of_run(run):
@@ -124,14 +132,34 @@ def of_case(folder, case):
     found["abreast"] = abreast(runs) if len(runs) > 1 else steady_record.UNKNOWN
     ucs = strengths(folder, rock_of(case))
     found["ucs"] = steady_record.sample_mean(1e-6 * ucs)
+    found["tensile_strength"] = steady_record.sample_mean(1e-6 * tensions(folder, case))
     found["specific_energy"] = scaled(found["energy"], 1e-6)
     found["energy"] = scaled(found["energy"], 1e-6 / found["ucs"].value)
     way = [run.parameter("cut_length") + run.parameter("ramp_length") for run in runs]
     minutes = [run.summary["wall_time"]["total"] / 60 for run in runs]
     missed = [run.balances["energy"]["residual"] / run.balances["energy"]["tool_work"] for run in runs]
-    return {**found, "each": each, "packings": len(runs), "cost": sum(minutes) / sum(way),
+    return {**found, "each": each, "packings": len(runs), "version": runs[0].summary["versions"]["rockwear"],
+            "cost": sum(minutes) / sum(way),
             "missed": max(map(abs, missed)),
             "way": sum(run.parameter("cut_length") / run.parameter("depth_of_cut") - BEGIN for run in runs)}
+
+
+def keep(found, path):
+    """Write {case: row of of_case}, so that cases can stand in a table without their runs: `kept` reads them."""
+    lines = ",\n".join(f"{json.dumps(case)}: {json.dumps(row)}" for case, row in found.items())
+    path.write_text(f"{{\n{lines}\n}}\n", encoding="utf-8")
+
+
+def kept(path):
+    """{case: row of of_case} of a file that `keep` wrote."""
+    found = json.loads(path.read_text(encoding="utf-8"))
+    for row in found.values():
+        row["each"] = {int(seed): _measured(one) for seed, one in row["each"].items()}
+    return {case: _measured(row) for case, row in found.items()}
+
+
+def _measured(row):
+    return {name: Measured(*value) if isinstance(value, list) else value for name, value in row.items()}
 
 
 def shown(measured):

@@ -6,9 +6,9 @@ from scipy import stats
 
 from calibration import generated
 from calibration.campaigns.steady_cut_cases import (
-    AT_DEPTHS, BASE, BENTHEIM, CUT, CUTS, DEPTHS, EIGHT, EIGHT_LOW, EIGHT_SHARP, FINEST, HALVED, MEDIUM, NO_GRAINS,
-    PADOVA, PULLED, ROCKS, SETTINGS, STRONGER, changed_from, depth_case, depth_of, rock_of)
-from calibration.campaigns.steady_cut_numbers import COLUMNS, difference, force_over, scaled, shown, strengths
+    AT_DEPTHS, BASE, BENTHEIM, CUT, CUTS, DEPTHS, EIGHT, EIGHT_SHARP, FINEST, HALVED, MEDIUM, NO_GRAINS,
+    PADOVA, ROCKS, SETTINGS, STRONGER, changed_from, depth_case, depth_of, rock_of)
+from calibration.campaigns.steady_cut_numbers import COLUMNS, difference, force_over, scaled, shown
 from rockwear.kernels import cutting_theory
 from rockwear.kernels.checks import ParameterError
 from rockwear.kernels.cutting_envelope import RELATIONS, expected, exponent
@@ -41,25 +41,20 @@ def causes(found):
          for case, row in found.items()])
 
 
-def tensions(folder, case):
-    """(k,) Pa, tensile strengths of the rock of a case; of the base where its bonds are the base's."""
-    rock = rock_of(case)
-    return strengths(folder, rock if rock in PULLED else BASE, "tension")
-
-
-def envelope(folder, found):
+def envelope(found):
     """Rows of a table: cuts of JUDGED against what is expected of a rock of their strengths."""
     rows = []
     for case in JUDGED:
-        row, tension = found.get(case), tensions(folder, case)
-        if not row or not len(tension) or not math.isfinite(row["ucs"].value):
+        row = found.get(case)
+        if not row or not _tested(row):
             continue
         depth = depth_of(case)
         ours = {"mean_cutting_force": (row["force"], 1e-3, "kN/m"), "peak_over_mean": (row["peaks"], 1, ""),
                 "mean_peak_cutting_force": (row["peak"], 1e-3, "kN/m"),
                 "overbreak": (row["overbreak"], 1 / depth, "depths"),
                 "specific_energy": (row["specific_energy"], 1e-6, "MJ/m³")}
-        for one in expected(compressive_strength=1e6 * row["ucs"].value, tensile_strength=tension.mean(), depth=depth,
+        for one in expected(compressive_strength=1e6 * row["ucs"].value,
+                            tensile_strength=1e6 * row["tensile_strength"].value, depth=depth,
                             rake=math.radians(CUT["rake"])):
             measured, factor, unit = ours[one.observable]
             found_here = {case: measured}
@@ -72,6 +67,10 @@ def envelope(folder, found):
     return rows
 
 
+def _tested(row):
+    return all(math.isfinite(row[name].value) for name in ("ucs", "tensile_strength"))
+
+
 def relations(found):
     """Rows of a table: what several cuts tell together, against RELATIONS."""
     ours, rows = {}, []
@@ -82,7 +81,7 @@ def relations(found):
         if sum(map(part, forces)) > 1:
             depths = {depth: force for depth, force in forces.items() if part(depth)}
             ours[name, EIGHT] = exponent(list(depths), *np.array(list(depths.values())).T)
-    for case in (BASE, EIGHT, EIGHT_SHARP, EIGHT_LOW):
+    for case in (BASE, EIGHT, EIGHT_SHARP):
         per_degree = force_over(found, case, "rake")
         if math.isfinite(per_degree.value):
             ours["force_over_rake", case] = scaled(per_degree, 1e3 * math.degrees(1.0))
@@ -167,18 +166,18 @@ def _off(row, base, what):
     return off if math.isfinite(off) else None
 
 
-def theories(folder, found):
+def theories(found):
     """Rows of a table: peaks beside those of Evans and Nishimatsu, and thrust over cutting force beside the latter."""
     rows, friction = [], math.atan(TOOL_FRICTION)
     for case, row in found.items():
-        tension = tensions(folder, case)
         other_theory = case not in CUTS or "rake" in CUTS[case]
-        if not (other_theory and len(tension) and math.isfinite(row["ucs"].value)):
+        if not (other_theory and _tested(row)):
             continue
+        tension = 1e6 * row["tensile_strength"].value
         rake, depth = math.radians({**CUT, **CUTS.get(case, {})}["rake"]), depth_of(case)
         cohesion, angle = cutting_theory.mohr_coulomb(compressive_strength=1e6 * row["ucs"].value,
-                                                      tensile_strength=tension.mean())
-        evans = cutting_theory.evans(tensile_strength=tension.mean(), depth=depth, rake=rake)
+                                                      tensile_strength=tension)
+        evans = cutting_theory.evans(tensile_strength=tension, depth=depth, rake=rake)
         try:
             cutting, thrust = cutting_theory.nishimatsu(
                 shear_strength=cohesion, internal_friction=angle, depth=depth, rake=rake, friction_angle=friction,
