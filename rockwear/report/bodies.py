@@ -96,7 +96,7 @@ def gap(run, points, shot=None):
         now = shot or model
         return distance(points, now["tool_vertices"], now["tool_facets"])
     loops = tool_loops(run, shot) if shot else shapes.outlines(model["tool_positions"], model["tool_radii"])
-    return shapes.distance_to(points, loops, SPACING)
+    return shapes.distance_to(points, loops)
 
 
 def tip(run):

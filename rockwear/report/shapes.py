@@ -1,9 +1,9 @@
 """Shapes in a run's arrays: the outline of what is left of the tool, its wear along the contour, chips, cracks."""
 import numpy as np
-from scipy.spatial import Delaunay, QhullError, cKDTree
+from scipy.spatial import Delaunay, QhullError
 
 from rockwear.kernels.fragments import pieces
-from rockwear.kernels.polygon import contour, cross
+from rockwear.kernels.polygon import cross, nearest_on_edges
 
 ALPHA = 2.2
 """Gaps whose rim fits on a circle of this many mean radii are closed, as in kernels.surface."""
@@ -91,11 +91,14 @@ def section(vertices, facets, z):
     return np.stack(ends, axis=1)[:, :, :2]
 
 
-def distance_to(points, polygons, spacing):
-    """(n,) m from each point to the nearest side of the polygons, to within `spacing`; nan without any."""
+def distance_to(points, polygons):
+    """(n,) m from each point to the nearest side of the polygons; nan without any."""
     if not polygons:
         return np.full(len(points), np.nan)
-    return cKDTree(np.vstack([contour(polygon, spacing)[0] for polygon in polygons])).query(points)[0]
+    edges = np.vstack([np.roll(polygon, -1, axis=0) - polygon for polygon in polygons])
+    long = edges.any(axis=1)
+    foot, _ = nearest_on_edges(points, np.vstack(polygons)[long], edges[long])
+    return np.linalg.norm(points - foot, axis=1)
 
 
 def chips(count, pairs, intact, fixed):

@@ -166,9 +166,10 @@ def test_contour_counts_from_the_lowest_point_up_the_front():
 
 def test_distance_to_a_square():
     square = np.array([[0.0, 0], [2, 0], [2, 2], [0, 2]])
-    np.testing.assert_allclose(shapes.distance_to(np.array([[1.0, 1], [3, 3], [1, -0.5]]), [square], 1e-3),
-                               [1, math.sqrt(2), 0.5], atol=1e-3)
-    assert np.isnan(shapes.distance_to(np.zeros((1, 2)), [], 1e-3)).all()
+    points = np.array([[1.0, 1], [3, 3], [1, -0.5], [0.123, 0.01]])
+    np.testing.assert_allclose(shapes.distance_to(points, [np.repeat(square, 2, axis=0), square + 5]),
+                               [1, math.sqrt(2), 0.5, 0.01], rtol=1e-12)
+    assert np.isnan(shapes.distance_to(np.zeros((1, 2)), [])).all()
 
 
 def test_chips_are_not_joined_to_the_fixed_rock():
