@@ -55,14 +55,16 @@ def tip_limits(run):
     return x - 1.2 * width, x + 0.8 * width, y - 4, y + 2 * width - 4
 
 
-def worn_limits(run, shot, margin=2.0):
+def worn_limits(run, shot):
     """Limits in mm, in the tool's own frame, around most of what is removed or clearly worn; around the tip if nothing
     is."""
     lowest, worn = MM * tip(run), MM * worn_places(run, shot)
     if len(worn):
         away = np.linalg.norm(worn - lowest, axis=1)
         worn = worn[away <= np.percentile(away, 85)]
-    points = np.vstack([worn, lowest - 3, lowest + 3])
+    # Of small tools less is shown.
+    around, margin = np.minimum([3.0, 2.0], np.array([0.15, 0.1]) * MM * np.ptp(run.model["outline"][:, 1]))
+    points = np.vstack([worn, lowest - around, lowest + around])
     (left, bottom), (right, top) = points.min(axis=0) - margin, points.max(axis=0) + margin
     aside = max(0.0, 0.8 * (top - bottom) - (right - left)) / 2
     return left - aside, right + aside, bottom, top

@@ -12,7 +12,7 @@ from rockwear.report.solid import (
     ABOVE, BELOW, FRONT, READABLE, SIDE, behind_middle, paint, panels_without_axes, sphere_polygons, whole_frame)
 
 NEAR = 15.0
-"""Half the width (mm) of a picture of rock and tool at the tip."""
+"""Half the width (mm) of a picture of rock and tool at the tip; less of small tools."""
 TOOL_VIEWS = {"from above": ABOVE, "from in front": FRONT, "from in front and below": BELOW}
 
 
@@ -83,10 +83,11 @@ def in_plane_figure(run):
     return figure
 
 
-def around_tip(run, shot, margin=NEAR):
+def around_tip(run, shot):
     """Limits in mm around the tip where it is now, more of them above it."""
     x, y = MM * place(shot, tip(run)[None])[0]
-    return x - margin, x + margin, y - 8, y + 2 * margin - 8
+    margin = min(NEAR, 0.75 * MM * np.ptp(run.model["outline"][:, 1]))
+    return x - margin, x + margin, y - 0.5 * margin, y + 1.5 * margin
 
 
 def tip_figure(run, shown, stage):
