@@ -1,7 +1,7 @@
 """Figures of campaigns.steady_cut. found: {case: row of steady_cut_numbers.of_case}."""
 import numpy as np
 
-from calibration.campaigns.steady_cut_cases import AT_DEPTHS, BASE, CUT, EIGHT, FINEST, ROCKS, SETTINGS, depth_of
+from calibration.campaigns.steady_cut_cases import AT_DEPTHS, BASE, CUT, EIGHT, FINEST, FOUR, ROCKS, SETTINGS, depth_of
 from calibration.campaigns.steady_cut_numbers import COLUMNS, scaled
 from rockwear.kernels.cutting_envelope import (
     ENERGY_TARGET, OVERBREAK_TARGET, PEAKS_TARGET, SCRATCH_DEPTHS, SCRATCH_ENERGY, SCRATCH_STRENGTH, SCRATCH_THRUST)
@@ -13,7 +13,8 @@ MOVED = 0.15
 
 def resolution(found):
     """Figure: what the number of discs in the depth of cut changes, and what it costs."""
-    discs = {case: {**CUT, **ROCKS[case]}["discs_per_depth"] for case in (EIGHT, BASE, FINEST) if case in found}
+    discs = {case: {**CUT, **ROCKS[case]}["discs_per_depth"] for case in (FOUR, EIGHT, BASE, FINEST)
+             if case in found}
     drawn, panels = plots.canvas(13, 3.4, 1, 4)
     targets = {"energy": ENERGY_TARGET, "peaks": PEAKS_TARGET, "overbreak": OVERBREAK_TARGET, "thrust": None}
     for axes, (name, target) in zip(panels, targets.items()):
