@@ -13,7 +13,7 @@ from scipy.ndimage import gaussian_filter1d
 from scipy.optimize import brentq
 from scipy.spatial import cKDTree
 
-from rockwear.kernels.polygon import area, cross
+from rockwear.kernels.polygon import area, contour, cross
 from rockwear.model.facet_tool import FacetTool
 from rockwear.model.materials import STEEL
 from rockwear.model.particle_tool import Tool
@@ -128,7 +128,7 @@ class Pattern:
 
     def __init__(self, run):
         model, shot = run.model, run.snapshot(-1)
-        points, arc = shapes.contour(model["outline"], RAYS)
+        points, arc = contour(model["outline"], RAYS)
         worn = shot["worn_depth"] * model["tool_radii"]
         nearest = cKDTree(points).query(model["tool_positions"])[1]
         density = gaussian_filter1d(np.bincount(nearest, worn, len(points)), SMOOTH / RAYS)
