@@ -101,6 +101,7 @@ def test_what_was_measured_is_kept_for_tables_without_its_runs(tmp_path):
     # Its own runs come first.
     write_run(elsewhere / "cut/eight_discs-2")
     assert "1 cases of rockwear 0.0.0" in steady_cut.write(elsewhere, again)
+    assert numbers.kept(elsewhere / "steady_cut.json")["eight discs"]["each"].keys() == {2}
 
 
 def test_cuts_are_judged_at_their_own_depth_and_strength(tmp_path):
