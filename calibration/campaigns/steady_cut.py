@@ -36,7 +36,7 @@ def write(folder, others):
     """Tables and figures of all runs that exist, and tables of other cases ({case: row of of_case}), too. -> the
     tables, in Markdown."""
     measured = {case: row for case in CASES if (row := of_case(folder, case))}
-    found = {case: measured.get(case) or others[case] for case in CASES if case in measured or case in others}
+    found = {case: row for case in CASES if (row := {**others, **measured}.get(case))}
     files = [folder / "steady_cut.json"]
     keep(found, files[0])
     without = Counter(row["version"] for case, row in found.items() if case not in measured)

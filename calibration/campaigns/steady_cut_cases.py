@@ -90,7 +90,7 @@ CHANGES = {
     "grains not damped": dict(grain_quality=0.0),
     "stiffer tool contact, step 0.8": dict(tool_kn=1e10, tool_kt=1e10, contact_damping=0.2, time_step_fraction=0.8),
 }
-"""How else the rock of eight discs is cut: a twentieth of the cost of sixteen."""
+"""How else the rock of eight discs is cut: a seventh of the cost of sixteen."""
 RAKES = "rake -15°", "rake 15°"
 CUTS = {**{f"{EIGHT}, {name}": change for name, change in CHANGES.items()},
         **{f"{EIGHT_SHARP}, {name}": {**CHANGES[SHARP], **CHANGES[name]} for name in RAKES},

@@ -8,9 +8,6 @@ from rockwear.kernels.rigid_motion import Pose
 from rockwear.report import palette, shapes
 from rockwear.report.instants import stage_name
 
-SPACING = 1e-4
-"""Distance (m) between the places of a contour where worn depth is measured."""
-
 
 # ---- what there is
 

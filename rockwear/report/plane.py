@@ -52,7 +52,8 @@ def tip_limits(run):
     """Limits in mm, in the tool's own frame, of a picture of the tip."""
     x, y = MM * tip(run)
     width = MM * min(TIP_WINDOW, 0.5 * np.ptp(run.model["outline"], axis=0).max())
-    return x - 1.2 * width, x + 0.8 * width, y - 4, y + 2 * width - 4
+    below = min(4, 0.25 * width)
+    return x - 1.2 * width, x + 0.8 * width, y - below, y + 2 * width - below
 
 
 def worn_limits(run, shot):

@@ -3,11 +3,14 @@ import numpy as np
 
 from rockwear.kernels.polygon import contour
 from rockwear.report import palette
-from rockwear.report.bodies import SPACING, gap, has_facets, has_particles, in_plane, keeps_shape, tool_loops
+from rockwear.report.bodies import gap, has_facets, has_particles, in_plane, keeps_shape, tool_loops
 from rockwear.report.instants import turns, worn
 from rockwear.report.page import Section
 from rockwear.report.plane import draw_new_outline, worn_limits
 from rockwear.report.plots import MM, canvas, closed, frame, save
+
+SPACING = 1e-4
+"""Distance (m) between the places of the contour where worn depth is measured."""
 
 
 def outlines(run):
