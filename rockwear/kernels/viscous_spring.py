@@ -35,18 +35,26 @@ def viscous_spring(*, moduli, density, areas, distances):
                      NORMAL_DASHPOT * density * fast * areas, TANGENTIAL_DASHPOT * density * slow * areas)
 
 
-def stable_dashpots(*, masses, springs, step, critical):
-    """(k,) N s/m, the largest dashpots of particles with these springs that leave a leapfrog step stable. (Ours.)
+def stable_masses(*, masses, springs, dashpots, step, critical):
+    """(k,) kg, the least masses of particles with these springs and dashpots that leave a leapfrog step stable. (Ours.)
 
     An assembly is stable where 4 M - dt^2 K - 2 dt C is positive definite (kernels.stability). K of the bonds alone is
-    at most 4 M / dt_c^2 with their critical step dt_c, so what remains for a spring k and a dashpot c of one particle
-    is 4 m (1 - (dt / dt_c)^2) >= dt^2 k + 2 dt c.
+    at most 4 M / dt_c^2 with their critical step dt_c, in which particles have their `masses` m; so with a spring k and
+    a dashpot c to the ground, m (dt / dt_c)^2 + dt^2 k / 4 + dt c / 2 is enough.
 
-    masses (k,) kg; springs (k,) N/m; step dt, critical dt_c: s, 0 < dt <= dt_c. Raises ParameterError.
+    masses (k,) kg; springs (k,) N/m; dashpots (k,) N s/m; step dt, critical dt_c: s, 0 < dt <= dt_c. Raises
+    ParameterError.
     """
-    masses, springs = np.asarray(masses, float), np.asarray(springs, float)
+    masses, springs, dashpots = (np.asarray(values, float) for values in (masses, springs, dashpots))
     require(0 < step <= critical, "step", step, f"greater than 0 and at most the critical step {critical:.3g}", "s")
-    return np.maximum(2 * masses * (1 - (step / critical)**2) / step - 0.5 * step * springs, 0.0)
+    return masses * (step / critical)**2 + 0.25 * step**2 * springs + 0.5 * step * dashpots
+
+
+def stable_dashpots(*, masses, springs, step, critical):
+    """(k,) N s/m, the largest dashpots c for which `stable_masses` are no more than `masses`; the same arguments."""
+    masses = np.asarray(masses, float)
+    without = stable_masses(masses=masses, springs=springs, dashpots=0.0, step=step, critical=critical)
+    return np.maximum(2 * (masses - without) / step, 0.0)
 
 
 def shares(along, low, high):

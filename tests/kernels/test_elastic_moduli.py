@@ -11,7 +11,7 @@ from rockwear.kernels.elastic_moduli import Moduli, elastic_moduli, stiffness_te
 from rockwear.kernels.packing import contacts, pack
 from rockwear.kernels.stability import contact_rows
 from rockwear.kernels.stability import critical_time_step
-from rockwear.kernels.viscous_spring import shares, stable_dashpots, viscous_spring
+from rockwear.kernels.viscous_spring import shares, stable_dashpots, stable_masses, viscous_spring
 
 KN, KT = 2e10, 5e9
 
@@ -136,6 +136,23 @@ def test_dashpots_leave_the_step_stable(part, spring):
                                ground=([5], [[1.0, 0.0]], spring, 0.0, stable_dashpots(
                                    masses=[8e-3], springs=[spring], step=step, critical=1e9)[0]))
     assert alone == pytest.approx(step, rel=1e-5)
+
+
+@pytest.mark.parametrize("part, spring, dashpot", [(0.3, 0.0, 1e3), (0.8, 1e9, 1e3), (0.8, 1e9, 0.0), (0.7, 0.0, 8e3)])
+def test_a_lighter_disc_leaves_the_step_stable(part, spring, dashpot):
+    """The same chain, its last disc as light as the bound allows; for a disc that no bond holds that is exact."""
+    x = np.column_stack([2e-3 * np.arange(6), np.zeros(6)])
+    masses = np.full(6, 8e-3)
+    common = dict(positions=x, radii=np.full(6, 1e-3), inertias=np.full(6, 4e-9), fixed=[0])
+    chain = dict(bonds=[[k, k + 1] for k in range(5)], kn=1e10, kt=4e9)
+    critical = critical_time_step(masses=masses, **common, **chain)
+    springs = dict(springs=[spring], dashpots=[dashpot], step=part * critical)
+    held = dict(ground=([5], [[1.0, 0.0]], spring, 0.0, dashpot))
+    lighter = np.append(masses[:5], stable_masses(masses=masses[5:], critical=critical, **springs))
+    assert lighter[5] > 0 and critical_time_step(masses=lighter, **common, **chain, **held) >= part * critical
+    alone = np.append(masses[:5], stable_masses(masses=masses[5:], critical=1e9, **springs))
+    assert critical_time_step(masses=alone, **common, bonds=np.empty((0, 2), int), kn=0.0, kt=0.0,
+                              **held) == pytest.approx(part * critical, rel=1e-5)
 
 
 @pytest.mark.parametrize("step", [0.0, 2e-7])
