@@ -19,7 +19,7 @@ FOLLOWED = 0.5
 HELD_MASS = 0.8
 """Of a particle's mass while it is held: it stands for the rock up to the boundary, and reaches beyond. With all of its
 mass S waves come back with 5.7 % in place of 2.5 (calibration/results/boundary.md)."""
-COLUMNS = ("numbers", "supports", "radii", "masses", "places", "normals", "forces", "kn", "kt", "cn", "ct")
+COLUMNS = "numbers", "supports", "radii", "masses", "places", "normals", "forces", "kn", "kt", "cn", "ct"
 """What is kept of each held particle. Its radius is that at which it was held; heat may change it later. Its mass is
 all of it."""
 
