@@ -29,9 +29,9 @@ class AbsorbingBoundary(Engine):
 
     moduli: kernels.elastic_moduli.Moduli of the rock; density: kg/m3 of its bulk; step, critical: s, time step and that
     of the bonded rock: where few particles stand for a large face, they keep as much of their mass as leaves the step
-    stable, and dashpots are cut where that is not enough; period: steps between samples of the energy. `hold` and `release` may be called between any two steps once the rock
-    is bonded; a held particle must be free to move. Both change its mass and not its velocity: the kinetic energy is
-    another one afterwards.
+    stable, and dashpots are cut where that is not enough; period: steps between samples of the energy. `hold` and
+    `release` may be called between any two steps once the rock is bonded; a held particle must be free to move. Both
+    change its mass and not its velocity: the kinetic energy is another one afterwards.
 
     A support is a sphere at rest that nothing else meets. It reaches to the far side of its particle, so that they
     touch at the particle's centre: the contact does not turn it. A held particle does not turn: where YADE measures
