@@ -196,6 +196,11 @@ def release(block):
     return abs(block.energy() - before) / springs
 
 
+def masses(block):
+    """Largest part of a particle's mass that is not there."""
+    return max(1 - O.bodies[n].state.mass / mass for n, mass in enumerate(block.rock.masses.tolist()))
+
+
 def pulled():
     """Force on a particle that is pulled off by ten radii, over that of its spring and dashpot; the energies of the
     spring over the work."""
@@ -226,7 +231,8 @@ def main():
     pulses = [(wave, degrees) for wave in "PS" for degrees in (0, 45)]
     found = {f"{wave}{degrees}": reflected(block, wave, degrees, wavelength, amplitude)
              for (wave, degrees), amplitude in zip(pulses, AMPLITUDES)}
-    found["release"] = release(block)
+    found["lighter"] = masses(block)
+    found["release"], found["lighter_after_release"] = release(block), masses(block)
     found["pulled"] = pulled()
     found["settled"] = settled()
     with open(sys.argv[-1], "w", encoding="utf-8") as file:
