@@ -78,7 +78,7 @@ def at_size(values, factor):
 
 
 CASES = {
-    "laws": (LAWS, (1, 2), (0.0, CONFINED_AT)),
+    "laws": (LAWS, (1, 2, 3), (0.0, CONFINED_AT)),
     "resolution": ({f"{kind}, r = {radius:g} mm": at_size(values, factor) for kind, values in
                     (("discs", ROCK), ("grains", GRAINS)) for radius, factor in FINENESS.items()},
                    (1, 2, 3, 4, 5), (0.0,)),
