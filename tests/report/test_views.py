@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from rockwear.kernels.boundary import prism, segments
-from rockwear.report import bodies, instants, pages, plots
+from rockwear.report import bodies, instants, pages, plane, plots
 from rockwear.report.folder import RunFolder
 from rockwear.report.views import density, forces, history, key_results, outlines, speeds, stages, temperature, two_disc
 from tests.report.made_up import HEADER, HOT, lattice, make_run
@@ -213,6 +213,25 @@ def test_forces_while_the_tool_cuts_are_those_of_its_stages(tmp_path):
     axes, = forces.figure(run, at_work).axes
     np.testing.assert_allclose(axes.lines[-2].get_ydata(), 1e-3 * run.column("thrust_force")[at_work])
     assert "while it cuts" in key_results.key_results(run).html()
+
+
+@pytest.mark.parametrize("size", [1.0, 0.1])
+def test_pictures_of_the_tip_are_as_small_as_the_tool(tmp_path, size):
+    """Made up 6 x 8 mm, and a tenth of that. They show the tip, and no more than twice the tool."""
+    lengths = "rock_radii", "tool_radii", "tool_positions", "outline", "box"
+    moving = "rock_positions", "tool_offset", "worn_depth"
+
+    def smaller(names):
+        return lambda arrays, k=0: {name: size * one if name in names else one for name, one in arrays.items()}
+
+    run = RunFolder(change(make_run(tmp_path / "run"), smaller(lengths), smaller(moving)))
+    shot = run.snapshot(-1)
+    lowest = 1e3 * bodies.tip(run)
+    for limits, where in ((plane.tip_limits(run), lowest), (plane.worn_limits(run, shot), lowest),
+                          (temperature.around_tip(run, shot), lowest + 1e3 * shot["tool_offset"])):
+        left, right, bottom, top = limits
+        assert left < where[0] < right and bottom < where[1] < top
+        assert right - left < 16 * size and top - bottom < 16 * size
 
 
 def test_times_are_shown_in_ms_or_s(tmp_path):
