@@ -92,6 +92,9 @@ campaign-worn: setup-sweep ## a tool worn by its own cut, and how it cuts then (
 campaign-granular: setup-sweep ## angle of repose and vibrated tube (an hour; resumes)
 	$(PYTHON) -m calibration.campaigns.granular $(OUT)/campaign-granular $(WHERE)
 
+campaign-slow: setup-sweep ## cuts at 8 to 1 m/s that a source makes at 0.04 (hours; resumes); FULL=--full: at 0.04, too
+	$(PYTHON) -m calibration.campaigns.slow $(OUT)/campaign-slow $(FULL) $(WHERE)
+
 lint: ## check the code with flake8
 	$(call install,$(TO_LINT),flake8)
 	$(PYTHON) -m flake8

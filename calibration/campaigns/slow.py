@@ -1,0 +1,150 @@
+"""Cuts that [Rojek 2003, ch. 8 and 10] makes at 0.04 m/s: what the speed of the mechanics changes, down to the source's.
+
+    python3 -m calibration.campaigns.slow DIR [SCENE ...] [--full] [--read] [--jobs N | --scheduler ADDRESS]
+
+The same way, 40 mm, of the same packings at SPEEDS; --full adds the source's own speed, some nine million steps a run
+(hours). N runs at a time (2), or as many as a dask scheduler's workers take; a folder a run; finished runs are not
+repeated, so that an interrupted campaign resumes. --read starts no run and evaluates those that exist. Writes into DIR
+slow.md (a table a scene), slow.png and provenance.json.
+"""
+import math
+import sys
+
+import matplotlib
+import numpy as np
+from scipy import stats
+
+from calibration import generated
+from calibration.campaigns.runs import Runs, command_line, wait_for
+from rockwear.report import palette, plots
+from rockwear.report.folder import RunFolder
+
+WAY, SOURCE = 0.04, 0.04
+"""m, and m/s."""
+SPEEDS = 8.0, 4.0, 2.0, 1.0
+"""m/s of the mechanics."""
+SEEDS = 1, 2, 3
+COMMON = dict(grading_factor=3, report="false", snapshot_period=1)
+
+
+def _as_fast(speed):
+    """A cut whose tool is so fast."""
+    return dict(velocity=speed, start_up=WAY / speed)
+
+
+def _scaled(speed):
+    """A cut whose heat has the time of the source's speed, and whose mechanics are so fast."""
+    return dict(time_scale=speed / SOURCE)
+
+
+SCENES = {"segments, 8.1": ("yade_scripts/cutting_segments.py", _as_fast),
+          "particles, 8.2": ("yade_scripts/cutting_particles.py", _as_fast),
+          "heat, 10.1": ("yade_scripts/cutting_thermal.py", _scaled)}
+"""{scene: (script, parameters of a speed)}."""
+QUANTITIES = {"mean force, kN/m": lambda run: 1e-3 * run.result("mean_cutting_force"),
+              "peak force, kN/m": lambda run: 1e-3 * run.result("peak_cutting_force"),
+              "mean thrust, kN/m": lambda run: 1e-3 * run.result("mean_thrust_force"),
+              "friction at the tool, J/m": lambda run: run.summary["balances"]["energy"]["tool_friction"],
+              "cracks": lambda run: run.result("tensile_cracks") + run.result("shear_cracks")}
+"""{heading: number of a run}. Wear is the friction at the tool times a constant."""
+DRAWN = "mean force, kN/m", "friction at the tool, J/m"
+CHANCE = 0.05
+"""How often chance alone may make a change that counts as told."""
+
+
+def plan(scenes, speeds):
+    """{(scene, speed, seed): (folder, script, parameters)}, the fast ones first."""
+    return {(scene, speed, seed): (f"{scene.split(',')[0]}-{speed:g}-{seed}", script,
+                                   dict(COMMON, **at(speed), seed=seed))
+            for speed in speeds for seed in SEEDS for scene, (script, at) in SCENES.items() if scene in scenes}
+
+
+def measured(folder, runs):
+    """{(scene, speed): {seed: {heading: number}}} of the runs of a plan that exist."""
+    found = {}
+    for (scene, speed, seed), (name, *_) in runs.items():
+        if (folder / name / "summary.json").exists():
+            run = RunFolder(folder / name)
+            found.setdefault((scene, speed), {})[seed] = {
+                heading: float(number(run)) for heading, number in QUANTITIES.items()}
+    return found
+
+
+def mean(values):
+    """(mean, standard error) of (n,) numbers; nan for the error of one."""
+    values = np.asarray(values, float)
+    return values.mean(), values.std(ddof=1) / math.sqrt(len(values)) if len(values) > 1 else math.nan
+
+
+def told(changes):
+    """Whether the mean of these changes (n,) is told from nothing by chance (Student's t)."""
+    value, error = mean(changes)
+    return len(changes) > 2 and abs(value) > stats.t.ppf(1 - 0.5 * CHANCE, len(changes) - 1) * error
+
+
+def rows(found, scene):
+    """Rows of the table of a scene: means at each speed, and, told from chance, what differs in the same packings from
+    the slowest."""
+    speeds = sorted(speed for one, speed in found if one == scene)
+    slowest = found[scene, speeds[0]]
+    for speed in reversed(speeds):
+        packings = found[scene, speed]
+        common = packings.keys() & slowest.keys()
+        differs = [heading.split(",")[0] for heading in QUANTITIES if told(
+            [packings[seed][heading] - slowest[seed][heading] for seed in common])]
+        yield [f"{speed:g}", len(packings), *(_cell([one[heading] for one in packings.values()])
+                                              for heading in QUANTITIES), ", ".join(differs) or "–"]
+
+
+def _cell(values):
+    value, error = mean(values)
+    return f"{value:.3g}" + (f" ± {error:.2g}" if math.isfinite(error) else "")
+
+
+def figure(found):
+    """DRAWN over the speed, a panel each; error bars are standard errors over packings."""
+    drawn, panels = plots.canvas(10, 4, 1, len(DRAWN))
+    for axes, heading in zip(panels, DRAWN):
+        for scene, colour in zip(SCENES, palette.OTHER_LINES):
+            speeds = sorted(speed for one, speed in found if one == scene)
+            if speeds:
+                values, errors = np.array([mean([one[heading] for one in found[scene, speed].values()])
+                                           for speed in speeds]).T
+                axes.errorbar(speeds, values, errors, fmt="o-", color=colour, capsize=3, label=scene)
+        axes.set(xscale="log", xlabel="speed of the mechanics / m/s", ylabel=heading.replace(", ", " / "))
+        axes.set_ylim(bottom=0)
+    panels[0].legend()
+    return drawn
+
+
+def write(folder, runs):
+    """Table and figure of the runs that exist. -> the table, in Markdown."""
+    found = measured(folder, runs)
+    lines = ["Mean ± standard error over packings. Differs: from the slowest in the same packings, by more than chance "
+             f"makes once in {1 / CHANCE:g} cases (Student's t).", ""]
+    for scene in SCENES:
+        if any(one == scene for one, _ in found):
+            lines += [f"## {scene}", "", *generated.table(
+                ["m/s", "packings", *QUANTITIES, "differs"], rows(found, scene))]
+    with matplotlib.rc_context(plots.STYLE):
+        figure(found).savefig(folder / "slow.png")
+    generated.record(folder / "slow.png")
+    return generated.write_page(folder / "slow.md", lines)
+
+
+def main(folder, words, **where):
+    """where: options of Runs. -> exit code: 1 where a run failed."""
+    failed, full = 0, "--full" in words
+    scenes = [word for word in words if word in SCENES] or list(SCENES)
+    if "--read" not in words:
+        with Runs(folder, keep=True, **where) as runs:
+            jobs = {key: runs.start(name, script, **values)
+                    for key, (name, script, values) in plan(scenes, [*SPEEDS, SOURCE] if full else SPEEDS).items()}
+            failed = wait_for(jobs, lambda key, run: "{}: {:g} m/s, packing {}".format(*key))
+    print(write(folder, plan(SCENES, [*SPEEDS, SOURCE])))
+    return failed
+
+
+if __name__ == "__main__":
+    place, words, where = command_line(__spec__.name, SCENES, flags=("--full", "--read"))
+    sys.exit(main(place, words, **where))
