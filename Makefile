@@ -11,7 +11,7 @@ TO_LINT := python3-flake8
 .DEFAULT_GOAL := help
 .PHONY: help setup setup-sweep setup-test run test test-kernels validate bench fidelity campaigns campaign-wear \
         campaign-uniaxial campaign-grains campaign-rocks campaign-steady campaign-worn campaign-granular \
-        lint clean
+        campaign-slow lint clean
 
 # $(call install,packages,modules): the missing packages, where there is apt-get; then each module must be found.
 define install

@@ -1,4 +1,4 @@
-"""Cuts that [Rojek 2003, ch. 8 and 10] makes at 0.04 m/s: what the speed of the mechanics changes, down to the source's.
+"""Cuts that [Rojek 2003, ch. 8, 10] makes at 0.04 m/s: what the speed of the mechanics changes, down to the source's.
 
     python3 -m calibration.campaigns.slow DIR [SCENE ...] [--full] [--read] [--jobs N | --scheduler ADDRESS]
 
