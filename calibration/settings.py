@@ -14,7 +14,7 @@ from pathlib import Path
 
 from calibration import command
 from rockwear.kernels.checks import ParameterError, require
-from rockwear.kernels.parameter import Group, Parameter, above_zero, number, text
+from rockwear.kernels.parameter import Group, Parameter, number, text
 from rockwear.run import parameters
 
 MEASURED = Path(__file__).parent / "results" / "steady_settings.json"
@@ -24,9 +24,11 @@ LEAST_DEPTHS = 20
 """Depths of cut below which no cut has means."""
 LONGEST = 2
 """Times as long as expected, at which a cut ends that does not know its mean force by then."""
+TIP = 0.1
+"""Radius of the tool's tip over the depth of cut, of the cuts that were measured."""
 GROUP = Group("settings", (
     Parameter("accuracy", 0.3, "", number(0.01, 1), "part of the mean by which results may be off"),
-    Parameter("depth_of_cut", 5e-3, "m", above_zero, "of the cut"),
+    Parameter("depth_of_cut", 5e-3, "m", number(1e-4, 0.1), "of the cut"),
     Parameter("of", "specific_energy,wear", "", text, f"what is to be so accurate, out of {', '.join(QUANTITIES)}")))
 
 
@@ -54,7 +56,7 @@ def choose(rows, *, accuracy, quantities):
 
 def shown(row, depths, off, of_length, depth):
     """Lines: the command, and what is to be expected of it."""
-    values = {"depth_of_cut": depth, **row["options"], **{name: part * depth for name, part in row["lengths"].items()},
+    values = {"depth_of_cut": depth, "tip_radius": TIP * depth, **row["options"], **{name: part * depth for name, part in row["lengths"].items()},
               "accuracy": round(of_length, 3), "cut_length": LONGEST * depths * depth}
     words = " ".join(f"--{name} {value:.6g}" if isinstance(value, (int, float)) else f"--{name} {value}"
                      for name, value in values.items())

@@ -10,7 +10,7 @@ from rockwear.kernels.bond_laws import BOND_LAWS
 from rockwear.kernels.checks import ParameterError, finite, require, within
 from rockwear.kernels.membrane import STIFF
 from rockwear.kernels.packing import POROSITY_LIMITS
-from rockwear.kernels.parameter import Group, Parameter, choice, file, integer, number, plausible, text
+from rockwear.kernels.parameter import Group, Parameter, choice, file, integer, number, plausible, text, words
 from rockwear.model.rock_file import PROPERTIES, RADIUS, RockPresets, check_properties
 from rockwear.scenes.parameters import OF_ROCK
 
@@ -48,6 +48,8 @@ GRAINS = (5.0, 0.0), (11.0, 1.8), (math.inf, 2.2)
 """(largest UCS over tensile strength, grain_edge over the mean radius that can give it). Without grains and with the
 cohesive law the ratio is 6 to 7 for any shear strength; at an edge of 1.8 radii it is 6.2, 8.1 and 13.0 for shear over
 tensile strengths of 1.5, 3 and 7 (525 discs, three packings)."""
+MOST_EDGE = 12.0
+"""Mean radii, edge of grains of which the smallest specimens of a fit hold five."""
 CONFINEMENTS = 0.1, 0.3
 """Confinements over UCS at which a friction angle is fitted."""
 HIGHEST = 1.5
@@ -80,6 +82,13 @@ def _target(name, meaning):
     return Parameter(name, "", PROPERTIES[name][0], wanted(name), meaning, "yours")
 
 
+def edge_or_choice(name, value, unit):
+    """A rule: an edge (m), 0 for none, or -1 for one that the fit chooses."""
+    edge = number(-1)(name, value, unit)
+    require(edge == -1 or edge >= 0, name, edge, "-1, 0 or greater than 0", unit)
+    return edge
+
+
 TARGETS = Group("targets", (
     _target("youngs_modulus", "Young's modulus"), _target("poissons_ratio", "Poisson's ratio"),
     _target("ucs", "uniaxial compressive strength"), _target("tensile_strength", "strength in direct tension"),
@@ -89,8 +98,8 @@ TARGETS = Group("targets", (
               "sigma1 in Pa, or sigma3_MPa and sigma1_MPa (kPa, GPa); not needed, and in place of friction_angle",
               "yours")))
 ROCK = Group("rock", (
-    Parameter("name", "fitted_rock", "", text, "of the rock"),
-    Parameter("source", "laboratory values given to calibration.fit", "", text, "where the targets are from"),
+    Parameter("name", "fitted_rock", "", words, "of the rock"),
+    Parameter("source", "laboratory values given to calibration.fit", "", words, "where the targets are from"),
     Parameter("radius_min", 1e-3, "m", plausible(*RADIUS), "smallest radius of the particles", "[Rojek 2003, 5.1]"),
     Parameter("radius_max", 1.5e-3, "m", plausible(*RADIUS), "largest radius of the particles", "[Rojek 2003, 5.1]"),
     Parameter("bond_law", LAWS[-1] if LAWS[-1] in BOND_LAWS else LAWS[0], "",
@@ -98,7 +107,7 @@ ROCK = Group("rock", (
     *(OF_ROCK[name] for name in GIVEN),
     Parameter("density", OF_ROCK["rock_density"].default, "kg/m3", number(*DENSITIES), "bulk density, that of the rock "
               "in every scene", OF_ROCK["rock_density"].source),
-    Parameter("grain_edge", -1.0, "m", number(-1), "mean edge of grains; 0: none; -1: chosen by ucs over "
+    Parameter("grain_edge", -1.0, "m", edge_or_choice, "mean edge of grains; 0: none; -1: chosen by ucs over "
               "tensile_strength, which grains raise")))
 SEARCH = Group("search", (
     Parameter("start", "", "", file, "rock, a name of the library or a file, whose bonds and grains the search begins "
@@ -161,6 +170,9 @@ def targets_of(values):
             f"at least radius_min = {values['radius_min']:g}", "m")
     require(values["radius_max"] <= WIDEST * values["radius_min"], "radius_max", values["radius_max"],
             f"at most {WIDEST:g} times radius_min = {values['radius_min']:g}", "m")
+    most = MOST_EDGE * (values["radius_min"] + values["radius_max"]) / 2
+    require(values["grain_edge"] <= most, "grain_edge", values["grain_edge"],
+            f"at most {most:.3g}: the smallest specimens of a fit hold five grains then", "m")
     least = FAR * least_toughness(found["tensile_strength"], radius=(values["radius_min"] + values["radius_max"]) / 2)
     require(found.get("fracture_toughness", least) >= least, "fracture_toughness", values["fracture_toughness"],
             f"at least {least:.3g}, half of what the most brittle bonds have at these radii", "Pa sqrt(m)")

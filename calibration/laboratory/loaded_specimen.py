@@ -84,6 +84,8 @@ class SpecimenTest(Scene):
     """
 
     sign, output_class = -1, None
+    beside_strength_measure = 0.0
+    """Pa that the specimen bears beside `strength_measure`."""
 
     def __init__(self, values):
         super().__init__()
@@ -229,7 +231,8 @@ class SpecimenTest(Scene):
         self.platens = Platens(left=self.left.tolist(), right=self.right.tolist(), velocity=self.sign * v.speed,
                                period=min(row, v.rock_sampling_period))
         self.recorder = Recorder([self.output.log, self.bonds.log], period=row)
-        self.failure = Failure(stress=self.strength_measure, broken=lambda: self.bonds.cracks, drop=v.drop, period=row)
+        self.failure = Failure(stress=self.strength_measure, broken=lambda: self.bonds.cracks, drop=v.drop,
+                               beside=self.beside_strength_measure, period=row)
         guard = EnergyGuard(work=lambda: sum(self.works().values()), floor=0.5 * rock.masses.sum() * v.speed**2,
                             period=200)
         self._register(self.bonds, *self._further_engines(), self.rock_friction, Separation(self.bonds, period=200),

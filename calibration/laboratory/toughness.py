@@ -14,6 +14,8 @@ GROUPS = groups(
     Parameter("notch", 0.4, "", number(fracture.SHORTEST, 0.8), "length of the notch over W", "measured"),
     without=("width", "height", "grip", "gauge", "platens"), speed=0.02, drop=0.15, strain_max=0.02,
     record_strain=1e-5)
+LEAST_SIZE = 16
+"""Over the largest radius."""
 PIN, PIN_PLACE, MOUTH = 0.125, 0.275, 0.25
 """Over W: half the length of a row of pin discs, its middle's distance from the notch, the load line's from the front,
 all as of the pins of ASTM E399."""
@@ -54,6 +56,9 @@ class ToughnessTest(SpecimenTest):
     """Pa, largest stress so far, and m/Pa, opening over stress at that moment."""
 
     def __init__(self, values):
+        least = LEAST_SIZE * values["radius_max"]
+        require(values["size"] >= least, "size", values["size"], f"at least {least:g}: so few discs give way elsewhere "
+                "than at the notch", "m")
         super().__init__({**values, "width": 1.2 * values["size"], "height": 1.25 * values["size"],
                           "platens": "smooth"})
 

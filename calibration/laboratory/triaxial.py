@@ -23,6 +23,8 @@ GROUPS = groups(
               "calibration/results/laboratory.md"),
     test=lambda values: "triaxial", speed=0.1)
 
+HELD = 0.5
+"""Part of the confinement by which the mean of what is held may differ without a warning."""
 NOTICED = 0.2
 """Deviatoric stress over the confinement from which a fall counts as failure: less is noise of the first loading."""
 TRANSITS = 20
@@ -49,6 +51,14 @@ class TriaxialOutput(SpecimenOutput):
         found["peak_stress"] = found["peak_stress"][0] + confinement, "Pa"
         return {**found, "residual_stress": (float(stress[-max(1, len(stress) // 20):].mean()), "Pa"),
                 "confinement_held": (float(held.mean()), "Pa"), "confinement_scatter": (float(held.std()), "Pa")}
+
+
+    def warnings(self):
+        columns, asked = self.scene.recorder.columns(), self.scene.v.confinement
+        held = self.found(columns).get("confinement_held", (asked, "Pa"))[0] if columns else asked
+        return super().warnings() + ([
+            f"the specimen held a confinement of {held:.3g} Pa in the mean and not of {asked:.3g}: its strengths are no "
+            "better known; a smaller membrane_interval or speed tells more"] if abs(held - asked) > HELD * asked else [])
 
 
 class TriaxialTest(SpecimenTest):
@@ -93,6 +103,11 @@ class TriaxialTest(SpecimenTest):
             return self.v.confinement
         part = min(1.0, self.time / (0.8 * self.stages[0][1] * self.time_step))
         return self.v.confinement * math.sin(0.5 * math.pi * part)**2
+
+    @property
+    def beside_strength_measure(self):
+        """Pa."""
+        return self.v.confinement
 
     def strength_measure(self):
         deviatoric = self.stress - self.v.confinement

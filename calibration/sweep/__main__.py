@@ -54,8 +54,9 @@ class Row:
         return RunFolder(self.folder) if self.done else None
 
 
-def read_rows(table, script, out):
-    """([Row], {parameter: unit}, folder of the sweep). Raises ParameterError before anything has run."""
+def read_rows(table, script, out, row=None):
+    """([Row], {parameter: unit}, folder of the sweep). row: the one that is to run, from 1; None for all. Raises
+    ParameterError before anything has run."""
     require(Path(table).is_file(), "table", table, "a file")
     require(Path(script).is_file(), "script", script, "a file")
     with tempfile.TemporaryDirectory() as scratch:
@@ -69,6 +70,8 @@ def read_rows(table, script, out):
         found = json.loads(file.read_text(encoding="utf-8"))
     if "error" in found:
         raise SweepError(found["error"])
+    count = len(found["rows"])
+    require(row is None or 1 <= row <= count, "row", row, f"from 1 to {count}")
     folder = made(Path(out or _common_out(found["rows"]) or Path("out") / Path(table).stem))
     script = Path(script).resolve()
     rows = []
@@ -129,11 +132,10 @@ def main(words):
     alone = options.slurm or options.row is not None
     try:
         where = {} if alone else runs.placement(words)[0]
-        rows, units, folder = read_rows(options.table, options.script, options.out)
+        rows, units, folder = read_rows(options.table, options.script, options.out, options.row)
         if options.slurm:
             return slurm.write(Path(options.slurm), rows, options.table, options.script, folder)
         if options.row is not None:
-            require(1 <= options.row <= len(rows), "row", options.row, f"from 1 to {len(rows)}")
             return run_one(rows[options.row - 1])
         run_all(rows, folder, **where)
     except (ParameterError, SweepError, OSError) as error:

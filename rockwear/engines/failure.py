@@ -5,21 +5,22 @@ from rockwear.engines.base import Engine, RunEnded
 class Failure(Engine):
     """Ends the run when the stress has fallen to a part `drop` of its peak and bonds are broken.
 
-    stress: a function giving it (Pa); broken: a function telling whether any bond is broken.
+    stress: a function giving it (Pa); broken: a function telling whether any bond is broken; beside: Pa that the
+    specimen bears beside it, which its strength has too.
     """
 
     name = "failure"
 
-    def __init__(self, *, stress, broken, drop, period=1):
+    def __init__(self, *, stress, broken, drop, beside=0.0, period=1):
         super().__init__(period=period)
-        self.stress, self.broken, self.drop = stress, broken, drop
+        self.stress, self.broken, self.drop, self.beside = stress, broken, drop, beside
         self.peak = 0.0
 
     def act(self):
         stress = self.stress()
         self.peak = max(self.peak, stress)
         if stress < self.drop * self.peak and self.broken():
-            raise RunEnded(f"failed at {self.peak / 1e6:.4g} MPa", True)
+            raise RunEnded(f"failed at {(self.peak + self.beside) / 1e6:.4g} MPa", True)
 
     def state(self):
         return {"peak": self.peak}

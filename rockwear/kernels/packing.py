@@ -287,7 +287,7 @@ def _scale_at(radius_scale, points, largest):
     scale = np.asarray(radius_scale(points), dtype=float)
     require(scale.shape == (len(points),), "radius_scale", f"array of shape {scale.shape}", "one factor a point")
     require(((scale >= 1) & (scale <= largest)).all(), "radius_scale", f"{scale.min():g}..{scale.max():g}",
-            f"between 1 and {largest:g} everywhere, for particles to fit into the container")
+            f"between 1 and {largest:.4g}: the largest particles must fit into the container")
     return scale
 
 

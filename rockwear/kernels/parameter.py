@@ -99,6 +99,12 @@ def text(name, value, unit):
     return str(value)
 
 
+def words(name, value, unit):
+    """A rule: a text that is not empty."""
+    require(str(value).strip(), name, value, "a text")
+    return str(value)
+
+
 def file(name, value, unit):
     """A rule: the path of a file, or nothing. The scene checks the contents."""
     return str(value)

@@ -85,8 +85,13 @@ def packed_box(*, width, height, radius_min, radius_max, porosity, seed, bonding
 
     def make():
         common = dict(radius_min=radius_min, radius_max=radius_max, porosity=porosity, seed=seed)
-        made = (packing.pack(box=(width, height), radius_scale=field, periodic=(along, False), **common)
-                if field or along else pack_uniform((width, height), **common))
+        try:
+            made = (packing.pack(box=(width, height), radius_scale=field, periodic=(along, False), **common)
+                    if field or along else pack_uniform((width, height), **common))
+        except ParameterError as error:
+            if error.name != "radius_scale":
+                raise
+            raise ParameterError("grading_factor", grading_factor, error.rule) from None
         return {"positions": made.positions, "radii": made.radii, "scale": made.scale}
 
     stored = ordered(cached(make, **key))

@@ -122,7 +122,9 @@ def _arguments(groups, arguments):
     try:
         found, others = _parser(groups).parse_known_args(_joined(arguments))
     except argparse.ArgumentError as error:
-        raise ParameterError(error.argument_name.lstrip("-"), "", "given a value") from None
+        name = error.argument_name.lstrip("-")
+        known = flat(groups).get(name)
+        raise ParameterError(name, "nothing", "given a value", known.unit if known else "") from None
     unknown = dict(word[2:].partition("=")[::2] for word in others)
     return {**vars(found), **unknown}
 

@@ -45,7 +45,8 @@ def with_residual(balance, source):
 
 def energy_warnings(balance):
     """Lines where an energy balance misses more than ENERGY_MISSED of its largest entry."""
-    part = balance["residual"] / max(abs(value) for value in balance.values()) if balance["residual"] else 0.0
+    largest = max(abs(value) for name, value in balance.items() if name != "residual")
+    part = balance["residual"] / largest if largest else 0.0
     return [] if abs(part) <= ENERGY_MISSED else [
         f"the energy balance misses {100 * part:.3g} % of its largest entry: results are no better known than that; a "
         "smaller sampling period or time_step_fraction may tell why"]

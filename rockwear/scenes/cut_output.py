@@ -158,7 +158,9 @@ class CutOutput(Output):
         return found
 
     def warnings(self):
-        return [*energy_warnings(self.energy_balance()), *self.scene.programme.warnings(), *self._wear_warnings()]
+        balance = self.energy_balance()
+        idle = [] if balance["tool_work"] else ["the tool did not meet the rock: forces, wear and heat of nothing are 0"]
+        return [*idle, *energy_warnings(balance), *self.scene.programme.warnings(), *self._wear_warnings()]
 
     def _wear_warnings(self):
         scene = self.scene

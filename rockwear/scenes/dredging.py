@@ -120,6 +120,8 @@ def check_cut(v, turn_time):
             f"more than three rock particles, {6 * v.radius_max:g}", "m")
     if v.window_ahead:
         check_window(v)
+    else:
+        require(not v.window_behind, "window_behind", v.window_behind, "left out without window_ahead", "m")
 
 
 def check_window(v):

@@ -177,6 +177,12 @@ def test_bad_tables_are_refused_before_a_row_runs(tmp_path, capsys, header, row,
     assert not (tmp_path / "out").exists()
 
 
+def test_a_row_that_is_not_there_is_refused(tmp_path, capsys):
+    words = table(tmp_path / "rows.table", "description seed", "a 1", "b 2")
+    assert sweep.main([words, SCRIPT, "--out", str(tmp_path / "out"), "--row", "9"]) == 2
+    assert capsys.readouterr().err == "error: row = 9: must be from 1 to 2\n" and not (tmp_path / "out").exists()
+
+
 def test_a_missing_table_and_a_silent_scheduler_are_refused(tmp_path, capsys, monkeypatch):
     assert sweep.main([str(tmp_path / "none.table"), SCRIPT]) == 2
     monkeypatch.setattr(runs, "PATIENCE", 0.2)

@@ -189,3 +189,9 @@ def test_an_oblique_cut_crosses_what_it_meets():
     cut = rock.Arranged(positions=places, radius=1e-3, width=0.01, height=0.01, density=2500)
     cut.cut((2e-3, 1e-3), (4e-3, -1e-3))
     assert cut.pairs.tolist() == [[0, 1], [2, 3]]
+
+
+def test_particles_that_grow_too_large_are_the_grading_s_fault():
+    with pytest.raises(ParameterError, match="^grading_factor = 3: must be between 1 and 2.222"):
+        rock.Specimen(width=0.03, height=0.02, radius_min=1e-3, radius_max=1.5e-3, porosity=0.12, seed=1, bonding_gap=1e-4,
+                      density=2500.0, grading_factor=3.0, fine_depth=0.008)

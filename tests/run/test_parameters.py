@@ -60,7 +60,7 @@ def test_every_parameter_gets_a_value_in_the_order_of_its_declaration():
     ("--wear_accel 4", "wear_accel = 4: must be a parameter of this scene; did you mean wear_acceleration "
                        "(--help lists them)"),
     ("--zzz", "zzz = : must be a parameter of this scene (--help lists them)"),
-    ("--kn", "kn = : must be given a value"), ("--kn --kt 3", "kn = : must be given a value"),
+    ("--kn", "kn = nothing N/m: must be given a value"), ("--kn --kt 3", "kn = nothing N/m: must be given a value"),
     ("kn 3", "argument = kn: must be of the form --name value"),
     ("-kn 3", "argument = -kn: must be of the form --name value"),
     ("--kn 3 4", "argument = 4: must be of the form --name value"),

@@ -158,7 +158,7 @@ def test_bad_values_leave_nothing_behind(refused):
 @pytest.mark.parametrize("words, expected", [
     (words_of({"kn": -20e9}, "out"), "kn = -2e+10 N/m: must be greater than 0"),
     (words_of({"tool_specific_heat": 1e-6}, "out"), "heat_period = 0.0001 s: must be at most 1000 stable heat steps"),
-    (["--kn"], "kn = : must be given a value")], ids=["rule", "scene", "command line"])
+    (["--kn"], "kn = nothing N/m: must be given a value")], ids=["rule", "scene", "command line"])
 def test_a_process_of_its_own_ends_so(words, expected, tmp_path):
     run = run_script(SCRIPT, *words, cwd=tmp_path)
     assert_refused(run.code, run.stdout + run.stderr, expected)
@@ -166,8 +166,8 @@ def test_a_process_of_its_own_ends_so(words, expected, tmp_path):
 
 
 def test_bad_command_line(tmp_path):
-    cases = {"kn = : must be given a value": ["--kn"], "argument = kn: must be of the form --name value": ["kn", "3"],
-             "kt = 3=4 N/m: must be a number": ["--kt=3=4"], "Rn = : must be given a value": ["--Rn", "--kt", "3"]}
+    cases = {"kn = nothing N/m: must be given a value": ["--kn"], "argument = kn: must be of the form --name value": ["kn", "3"],
+             "kt = 3=4 N/m: must be a number": ["--kt=3=4"], "Rn = nothing N: must be given a value": ["--Rn", "--kt", "3"]}
     for expected, (code, said) in zip(cases, refusals(SCRIPT, tmp_path, cases.values())):
         assert_refused(code, said, expected)
 

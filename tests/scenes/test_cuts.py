@@ -84,3 +84,11 @@ def test_without_conduction_the_tool_keeps_half_of_what_it_rubs(heated):
     stored = ParticleBody(tool).capacities(steel, "voronoi") @ rise
     rubbed = run.summary["balances"]["friction"]["tool"]
     assert stored == pytest.approx(0.5 * values["heat_fraction"] * rubbed, rel=1e-9)
+
+
+@pytest.mark.parametrize("tool", ["particles", "segments"])
+def test_a_tool_that_does_not_come_to_the_rock_says_so(tmp_path, tool):
+    done = run_script(ROOT / "yade_scripts/tooth_cycles.py", *arguments({**SMALL, "tool": tool, "start_up": 1e-5,
+                      "cycles": 0, "report": "false"}), "--out", str(tmp_path / "run"), out=tmp_path / "run")
+    assert done.code == 0, done.stderr
+    assert value(done, "mean_cutting_force") == 0 and any("did not meet" in line for line in done.summary["warnings"])

@@ -121,6 +121,7 @@ REFUSED = [
     (dict(tooth_height=0.05, clearance=1), "tooth_height = 0.0499988"),
     (dict(window_ahead=0.1, window_behind=0.1), "window_ahead = 0.1"),
     (dict(window_ahead=0.2, window_behind=0.05), "window_behind = 0.05"),
+    (dict(window_behind=0.05), "window_behind = 0.05 m: must be left out without window_ahead"),
     (dict(window_ahead=0.12, window_behind=0.07), "window_ahead = 0.12")]
 
 

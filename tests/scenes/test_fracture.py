@@ -111,6 +111,7 @@ REFUSED = {
     NOTCHED: [({"notch": 0.1}, "notch = 0.1: must be at least 0.2"),
               ({"notch": 0.9}, "notch = 0.9: must be at most 0.8"),
               ({"size": -1}, "size = -1 m: must be greater than 0"),
+              ({"size": 0.01}, "size = 0.01 m: must be at least 0.024"),
               ({"platens": "rough"}, "platens")]}
 
 
