@@ -56,7 +56,8 @@ def choose(rows, *, accuracy, quantities):
 
 def shown(row, depths, off, of_length, depth):
     """Lines: the command, and what is to be expected of it."""
-    values = {"depth_of_cut": depth, "tip_radius": TIP * depth, **row["options"], **{name: part * depth for name, part in row["lengths"].items()},
+    values = {"depth_of_cut": depth, "tip_radius": TIP * depth, **row["options"],
+              **{name: part * depth for name, part in row["lengths"].items()},
               "accuracy": round(of_length, 3), "cut_length": LONGEST * depths * depth}
     words = " ".join(f"--{name} {value:.6g}" if isinstance(value, (int, float)) else f"--{name} {value}"
                      for name, value in values.items())

@@ -57,8 +57,9 @@ class TriaxialOutput(SpecimenOutput):
         columns, asked = self.scene.recorder.columns(), self.scene.v.confinement
         held = self.found(columns).get("confinement_held", (asked, "Pa"))[0] if columns else asked
         return super().warnings() + ([
-            f"the specimen held a confinement of {held:.3g} Pa in the mean and not of {asked:.3g}: its strengths are no "
-            "better known; a smaller membrane_interval or speed tells more"] if abs(held - asked) > HELD * asked else [])
+            f"the specimen held a confinement of {held:.3g} Pa in the mean and not of {asked:.3g}: its strengths are "
+            "no better known; a smaller membrane_interval or speed tells more"
+        ] if abs(held - asked) > HELD * asked else [])
 
 
 class TriaxialTest(SpecimenTest):

@@ -159,7 +159,7 @@ class CutOutput(Output):
 
     def warnings(self):
         balance = self.energy_balance()
-        idle = [] if balance["tool_work"] else ["the tool did not meet the rock: forces, wear and heat of nothing are 0"]
+        idle = [] if balance["tool_work"] else ["the tool did not meet the rock: forces, wear and heat are 0"]
         return [*idle, *energy_warnings(balance), *self.scene.programme.warnings(), *self._wear_warnings()]
 
     def _wear_warnings(self):

@@ -293,8 +293,8 @@ def test_an_accuracy_that_no_setting_has_is_refused():
 def test_the_command_of_a_setting_has_its_lengths_over_the_depth():
     row = tables.settings(SETTINGS)[2]
     command, words = settings.shown(row, 40, 0.1, 0.2, 2e-3)
-    assert command.endswith("--depth_of_cut 0.002 --tip_radius 0.0002 --discs_per_depth 8 --velocity 8 --window_height 0.016 "
-                            "--accuracy 0.2 --cut_length 0.16")
+    assert command.endswith("--depth_of_cut 0.002 --tip_radius 0.0002 --discs_per_depth 8 --velocity 8 "
+                            "--window_height 0.016 --accuracy 0.2 --cut_length 0.16")
     assert "off by 10 % beside sixteen discs, by 20 % for its length, some 40 depths of cut; 8 minutes" in words
 
 

@@ -193,5 +193,5 @@ def test_an_oblique_cut_crosses_what_it_meets():
 
 def test_particles_that_grow_too_large_are_the_grading_s_fault():
     with pytest.raises(ParameterError, match="^grading_factor = 3: must be between 1 and 2.222"):
-        rock.Specimen(width=0.03, height=0.02, radius_min=1e-3, radius_max=1.5e-3, porosity=0.12, seed=1, bonding_gap=1e-4,
-                      density=2500.0, grading_factor=3.0, fine_depth=0.008)
+        rock.Specimen(width=0.03, height=0.02, radius_min=1e-3, radius_max=1.5e-3, porosity=0.12, seed=1,
+                      bonding_gap=1e-4, density=2500.0, grading_factor=3.0, fine_depth=0.008)

@@ -166,8 +166,10 @@ def test_a_process_of_its_own_ends_so(words, expected, tmp_path):
 
 
 def test_bad_command_line(tmp_path):
-    cases = {"kn = nothing N/m: must be given a value": ["--kn"], "argument = kn: must be of the form --name value": ["kn", "3"],
-             "kt = 3=4 N/m: must be a number": ["--kt=3=4"], "Rn = nothing N: must be given a value": ["--Rn", "--kt", "3"]}
+    cases = {"kn = nothing N/m: must be given a value": ["--kn"],
+             "argument = kn: must be of the form --name value": ["kn", "3"],
+             "kt = 3=4 N/m: must be a number": ["--kt=3=4"],
+             "Rn = nothing N: must be given a value": ["--Rn", "--kt", "3"]}
     for expected, (code, said) in zip(cases, refusals(SCRIPT, tmp_path, cases.values())):
         assert_refused(code, said, expected)
 
