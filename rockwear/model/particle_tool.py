@@ -5,13 +5,14 @@ from scipy.spatial import cKDTree
 from rockwear.kernels import packing
 from rockwear.kernels import polygon as outline
 from rockwear.kernels.voronoi import cells
-from rockwear.kernels.checks import positive, require
+from rockwear.kernels.checks import ParameterError, positive, require
 from rockwear.kernels.conduction import calibrated_conductance, paths
 from rockwear.kernels.erosion import Erosion
 from rockwear.model.cache import cached
 
-POROSITY = 0.13
-"""Of the packing that fills the outline [Rojek 2014, 5.2]. Its mass and volume are those of the outline."""
+POROSITIES = 0.13, 0.11, 0.09
+"""Of the packing that fills the outline [Rojek 2014, 5.2]: the first at which it is jammed. Particles of nearly equal
+radii lie in lattices, some of which are loose at more. Its mass and volume are those of the outline."""
 NEIGHBOUR_GAP = 0.2
 """Particles whose gap is below this part of the mean radius are joined by a bar, where bars conduct."""
 NEAREST = 3
@@ -24,6 +25,16 @@ def neighbours(positions, radii):
     closest = cKDTree(positions).query(positions, NEAREST + 1)[1][:, 1:]
     own = np.repeat(np.arange(len(radii)), NEAREST)
     return np.unique(np.sort(np.vstack([near, np.column_stack([own, closest.ravel()])]), axis=1), axis=0)
+
+
+def pack(**where):
+    """packing.pack at the first of POROSITIES at which the particles are jammed. Raises ParameterError."""
+    for porosity in POROSITIES:
+        try:
+            return packing.pack(porosity=porosity, **where)
+        except ParameterError as error:
+            if error.name != "porosity" or porosity == POROSITIES[-1]:
+                raise
 
 
 class ParticleTool:
@@ -55,12 +66,11 @@ class ParticleTool:
 def fill(vertices, *, radius_min, radius_max, seed):
     """{"positions": (n, 2) m, "radii": (n,) m} of a packing that fills a polygon (k, 2) m; kept in the cache."""
     def make():
-        filled = packing.pack(polygon=vertices, radius_min=radius_min, radius_max=radius_max, porosity=POROSITY,
-                              seed=seed)
+        filled = pack(polygon=vertices, radius_min=radius_min, radius_max=radius_max, seed=seed)
         return {"positions": filled.positions, "radii": filled.radii}
 
     return cached(make, fill=np.asarray(vertices).tolist(), radius_min=radius_min, radius_max=radius_max, seed=seed,
-                  porosity=POROSITY)
+                  porosity=POROSITIES)
 
 
 def fitted_conductance(*, radius_min, radius_max, seed, conductivity):
@@ -69,13 +79,12 @@ def fitted_conductance(*, radius_min, radius_max, seed, conductivity):
     itself may be any shape. conductivity: W/m K."""
     def make():
         side = 50 * radius_max
-        square = packing.pack(box=(side, side), radius_min=radius_min, radius_max=radius_max, porosity=POROSITY,
-                              seed=seed)
+        square = pack(box=(side, side), radius_min=radius_min, radius_max=radius_max, seed=seed)
         return {"conductance": calibrated_conductance(positions=square.positions, conductivity=conductivity,
                                                       conductance=1.0,
                                                       edges=neighbours(square.positions, square.radii))[:1]}
 
-    return float(cached(make, fit=[radius_min, radius_max, seed, conductivity], porosity=POROSITY, gap=NEIGHBOUR_GAP,
+    return float(cached(make, fit=[radius_min, radius_max, seed, conductivity], porosity=POROSITIES, gap=NEIGHBOUR_GAP,
                         nearest=NEAREST)["conductance"][0])
 
 

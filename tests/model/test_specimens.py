@@ -10,7 +10,7 @@ from rockwear.model import particle_tool as tool
 from rockwear.kernels.checks import ParameterError
 from rockwear.kernels.conduction import effective_conductivity
 from rockwear.kernels.polygon import area, tooth
-from rockwear.kernels.packing import contacts, pack
+from rockwear.kernels.packing import contacts, pack, porosity
 from rockwear.model.materials import STEEL
 
 SPECIMEN = dict(width=0.109, height=0.109, radius_min=1e-3, radius_max=1.5e-3, porosity=0.12, bonding_gap=1e-4,
@@ -141,10 +141,21 @@ def test_tool_conducts_like_steel():
     """The conductance of pairs fitted on one packing holds on others, to the scatter between packings of this size."""
     conductance, found = tool.fitted_conductance(**TOOL_PACKING, conductivity=60.0), []
     for seed in range(2, 6):
-        square = pack(box=(0.026, 0.026), radius_min=0.4e-3, radius_max=0.52e-3, porosity=tool.POROSITY, seed=seed)
+        square = pack(box=(0.026, 0.026), radius_min=0.4e-3, radius_max=0.52e-3, porosity=tool.POROSITIES[0], seed=seed)
         found.append(effective_conductivity(positions=square.positions, conductance=conductance,
                                             edges=tool.neighbours(square.positions, square.radii)).mean())
     assert np.mean(found) == pytest.approx(60, rel=0.03)
+
+
+def test_equal_particles_fill_a_tool_with_any_seed():
+    """This one's are loose at the first porosity: lattices."""
+    outline = tooth(height=0.07, width=0.045, rake=0.0, clearance=math.radians(3.0), tip_radius=4e-3)
+    equal = dict(polygon=outline, radius_min=5e-4, radius_max=5e-4, seed=2)
+    with pytest.raises(ParameterError, match="loose, not jammed"):
+        pack(porosity=tool.POROSITIES[0], **equal)
+    assert porosity(tool.pack(**equal)) == pytest.approx(tool.POROSITIES[1])
+    with pytest.raises(ParameterError, match="radius_min"):
+        tool.pack(**{**equal, "radius_min": 6e-4})
 
 
 def test_a_block_of_spheres_has_the_mass_of_its_bulk_and_five_faces_to_fix():
