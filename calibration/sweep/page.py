@@ -1,6 +1,7 @@
 """The page of a sweep: a table of parameters and results, a figure for each swept parameter, links to the reports."""
 import csv
 import math
+import sys
 
 import matplotlib
 import numpy as np
@@ -24,6 +25,9 @@ def write(folder, rows, units, asked=()):
     found = {row.name: run for row in rows if (run := row.run_folder())}
     swept = [name for name in units if len({str(row.values.get(name)) for row in rows if name in row.given}) > 1]
     results = list(asked) or shown_results(list(found.values()))
+    for name in results:
+        if found and not any(name in run.summary["results"] for run in found.values()):
+            print(f"no row has a result {name}", file=sys.stderr)
     header = ["row", *swept, *map(page.words, results), "wall time"]
     table = [_line(row, found.get(row.name), swept, units, results) for row in rows]
     sections = [page.Section("Rows", "", [page.table(table, header)])]

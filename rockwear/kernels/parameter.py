@@ -46,7 +46,7 @@ RENAMED_IN = "0.2"
 
 stiffness = plausible(1.0, 1e15)
 """A rule: N/m, of a contact or a bond."""
-density = plausible(1.0, 1e6)
+density = plausible(100.0, 1e6)
 """A rule: kg/m3."""
 speed = plausible(1e-9, 1e5)
 """A rule: m/s."""

@@ -270,7 +270,7 @@ def test_a_job_is_queued_again_at_its_time_limit_alone(tmp_path, monkeypatch, nu
     assert [file.read_text(encoding="utf-8").strip() for file in folder.glob("requeued")] == requeued
 
 
-def test_the_page_draws_each_swept_parameter_and_links_the_reports(tmp_path):
+def test_the_page_draws_each_swept_parameter_and_links_the_reports(tmp_path, capsys):
     rows = []
     for number, (depth, kind) in enumerate([(1e-3, "sharp"), (2e-3, "sharp"), (1e-3, "worn"), (2e-3, "worn")]):
         folder = tmp_path / f"row {number}"
@@ -286,5 +286,7 @@ def test_the_page_draws_each_swept_parameter_and_links_the_reports(tmp_path):
     text = page.write(tmp_path, rows, {"depth": "m", "kind": "", "kn": "N/m"}).read_text(encoding="utf-8")
     assert "4 of 4 rows done" in text and text.count("<img") == 2 and 'href="row%202/report.html"' in text
     assert "<td class=\"number\">2 mm</td>" in text and "2 kN/m" in text and "<th>same" not in text
+    page.write(tmp_path, rows, {"depth": "m"}, ["same", "nosuch"])
+    assert capsys.readouterr().err == "no row has a result nosuch\n"
     for name in ("depth", "kind"):
         assert (tmp_path / f"{name}.png").stat().st_size > 5000

@@ -79,7 +79,7 @@ OUT_OF_RANGE = [
     ({"kt": 1e99}, "kt = 1e+99 N/m: must be between 1 and 1e+15"),
     ({"tool_kn": 1e99}, "tool_kn = 1e+99 N/m: must be between 1 and 1e+15"),
     ({"tool_kt": 1e99}, "tool_kt = 1e+99 N/m: must be between 1 and 1e+15"),
-    ({"rock_density": 1e-99}, "rock_density = 1e-99 kg/m3: must be between 1 and 1e+06"),
+    ({"rock_density": 2.5}, "rock_density = 2.5 kg/m3: must be between 100 and 1e+06"),
     ({"velocity": 1e99}, "velocity = 1e+99 m/s: must be between 1e-09 and 100000"),
     ({"start_up": 1e99}, "start_up = 1e+99 s: must be between 1e-12 and 1e+08"),
     ({"velocity": 1e-6, "start_up": 1e4, "cycles": 0, "heat": "false"}, "must be at most 1e+10 of"),
