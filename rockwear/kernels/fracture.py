@@ -102,3 +102,19 @@ def _energy(crack, dissipated, width, notch):
 def toughness(modulus, energy):
     """K_IC = sqrt(E' G_f) (Irwin), Pa sqrt(m). modulus: Pa; energy: J/m2."""
     return math.sqrt(modulus * energy) if modulus * energy >= 0 else math.nan
+
+
+def size_effect(sizes, peaks):
+    """What K at the peak force of similar specimens goes to as they grow, and how fast.
+
+        1/K_peak^2 = (1 + W_0/W) / K^2
+
+    (Bažant 1984, the law of size for blunt fracture), by least squares over 1/W. sizes: (n,) m, W; peaks: (n,)
+    Pa sqrt(m). -> K (Pa sqrt(m)), W_0 (m), the size at which K_peak is K/sqrt(2); both nan where the peaks grow as
+    strength alone makes them, so that there is no bound. Raises ParameterError for fewer than two sizes.
+    """
+    require(len(set(sizes)) > 1, "sizes", sizes, "at least two", "m")
+    slope, inverse = np.polyfit(1.0 / np.asarray(sizes, float), np.asarray(peaks, float)**-2.0, 1)
+    if inverse <= 0.0:
+        return math.nan, math.nan
+    return 1.0 / math.sqrt(inverse), float(slope / inverse)

@@ -75,6 +75,15 @@ def test_bad_specimens_are_refused(values, name):
     assert caught.value.name == name
 
 
+def test_the_law_of_size_gives_back_what_it_was_made_of():
+    W = np.array([0.04, 0.08, 0.16])
+    assert fracture.size_effect(W, 9e5 / np.sqrt(1 + 0.03 / W)) == pytest.approx((9e5, 0.03))
+    # Strength alone: K grows as the root of the size.
+    assert all(map(math.isnan, fracture.size_effect(W, 1e6 * W**0.51)))
+    with pytest.raises(ParameterError, match="sizes"):
+        fracture.size_effect([0.04, 0.04], [1e6, 1e6])
+
+
 def test_stresses_of_a_pressed_disc():
     assert brazilian.tensile_strength(1e6, 0.05) == pytest.approx(0.6366 * 1e6 / 0.05, rel=1e-4)
     assert brazilian.centre_stresses(1.0, 1.0) == pytest.approx((2 / math.pi, -6 / math.pi))
