@@ -81,7 +81,8 @@ def figure(found):
     drawn, panels = plots.canvas(3 * len(found) + 1, 4, 1, len(found))
     for axes, (rock, of) in zip(panels, found.items()):
         for heading, colour in zip(("K_IC, MPa√m", PEAK), palette.OTHER_LINES):
-            mean, deviation = np.array([(np.mean(values[heading]), np.std(values[heading])) for values in of.values()]).T
+            values = [sized[heading] for sized in of.values()]
+            mean, deviation = [list(map(of_packings, values)) for of_packings in (np.mean, np.std)]
             axes.errorbar([1e3 * size for size in of], mean, deviation, fmt="o-", color=colour, capsize=3,
                           label="from the energy" if heading != PEAK else "at the peak force")
         axes.set(xscale="log", xlabel="W / mm", title=rock)
@@ -96,8 +97,8 @@ def figure(found):
 def write(folder, rocks):
     """Table and figure of the runs that exist. -> the table, in Markdown."""
     found = measured(folder, rocks)
-    lines = ["Mean ± standard error over packings. K_IC is that of the energy which a driven crack takes. K at the peak "
-             "force goes to that of a specimen without end as sqrt(W/(W + W_0)) (Bažant's law of size).", ""]
+    lines = ["Mean ± standard error over packings. K_IC is that of the energy which a driven crack takes. K at the "
+             "peak force goes to that of a specimen without end as sqrt(W/(W + W_0)) (Bažant's law of size).", ""]
     for rock, of in found.items():
         K, W_0 = without_end(of)
         lines += [f"## {rock}", "", *generated.table(["W, mm", "packings", *QUANTITIES], rows(of))]

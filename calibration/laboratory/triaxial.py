@@ -52,7 +52,6 @@ class TriaxialOutput(SpecimenOutput):
         return {**found, "residual_stress": (float(stress[-max(1, len(stress) // 20):].mean()), "Pa"),
                 "confinement_held": (float(held.mean()), "Pa"), "confinement_scatter": (float(held.std()), "Pa")}
 
-
     def warnings(self):
         columns, asked = self.scene.recorder.columns(), self.scene.v.confinement
         held = self.found(columns).get("confinement_held", (asked, "Pa"))[0] if columns else asked

@@ -275,8 +275,8 @@ def test_settings_to_choose_from_say_what_they_move_and_cost():
 
 
 @pytest.mark.parametrize("accuracy, of, setting, off, depths", [
-    (0.5, "specific_energy", "eight discs", 0.25, 20), (0.25, "specific_energy", "eight discs, window 8 depths high",
-                                                         0.1, 31), (0.2, "wear", "eight discs", 0.0, 40),
+    (0.5, "specific_energy", "eight discs", 0.25, 20),
+    (0.25, "specific_energy", "eight discs, window 8 depths high", 0.1, 31), (0.2, "wear", "eight discs", 0.0, 40),
     (0.08, "temperature", "eight discs, window 8 depths high", 0.05, 411), (0.04, "temperature", "base", 0.0, 1000),
     (0.9, "wear", "eight discs", 0.0, 20)])
 def test_the_cheapest_setting_that_is_accurate_enough_is_chosen(accuracy, of, setting, off, depths):

@@ -27,9 +27,9 @@ CLOSE = 0.01
 def install(folder, packages):
     """An environment with these packages. -> its folder. Raises PeerFailed."""
     place = folder / "environment"
-    for command in ([sys.executable, "-m", "venv", str(place)], [str(place / "bin/pip"), "install", "-q", *packages]):
+    for words in ([sys.executable, "-m", "venv", str(place)], [str(place / "bin/pip"), "install", "-q", *packages]):
         try:
-            done = subprocess.run(command, capture_output=True, encoding="utf-8", stdin=subprocess.DEVNULL)
+            done = subprocess.run(words, capture_output=True, encoding="utf-8", stdin=subprocess.DEVNULL)
             said = done.stderr.strip().splitlines()
         except OSError as error:
             raise lammps.PeerFailed(f"no environment: {error}") from None
