@@ -1,6 +1,6 @@
 """What bond laws and rock properties do to a rock, and whether a rock stays the same as its discs become finer.
 
-    python3 -m calibration.campaigns.rock_laws DIR [laws|resolution|softening|kept|relations ...] [--read]
+    python3 -m calibration.campaigns.rock_laws DIR [laws|resolution|softening|kept|powers|relations ...] [--read]
         [--jobs N | --scheduler ADDRESS]
 
 N runs at a time (2), or as many as a dask scheduler's workers take; a folder a run; finished runs are not repeated, so
@@ -59,8 +59,13 @@ LAWS = {
 }
 """One change at a time."""
 
+COARSEST = 1.5e-3
+"""m, largest radius of the rocks but KEPT."""
 FINENESS = {1.25: 1.0, 0.6: 0.48, 0.3: 0.24}
 """{mean radius, mm: factor on all lengths of the packing and of its grains}."""
+POWER = 0.12
+"""Of the radius, with which the strengths of bare discs grow so that UCS and tensile strength stay. By hand, from the
+softening campaign: UCS then goes as radius^-0.05, tensile strength as radius^0.03."""
 
 
 KEPT, KEPT_RADII = "crushing_sandstone", (0.25e-3, 0.375e-3)
@@ -70,11 +75,14 @@ KEPT_BOX, KEPT_SIZE = dict(width=0.04, height=0.02), 0.02
 length E G_f/strength^2 of the rock that counts."""
 
 
-def at_size(values, factor):
-    """Values of a rock whose packing is `factor` times as coarse; stresses and the fracture energy are the rock's."""
-    lengths = {"radius_min": 1e-3, "radius_max": 1.5e-3, "bonding_gap": 1e-4,
+def at_size(values, factor, power=0.0):
+    """Values of a rock whose packing is `factor` times as coarse. The fracture energy and stresses are the rock's, the
+    strengths of its bonds but for that power of the factor."""
+    lengths = {"radius_min": 1e-3, "radius_max": COARSEST, "bonding_gap": 1e-4,
                **{name: values[name] for name in ("bonding_gap", "grain_edge") if name in values}}
-    return {**values, **{name: float(f"{factor * length:.6g}") for name, length in lengths.items()}}
+    strengths = {name: values[name] * factor**power for name in ("bond_tension", "bond_cohesion")}
+    return {**values, **{name: float(f"{value:.6g}") for name, value in strengths.items()},
+            **{name: float(f"{factor * length:.6g}") for name, length in lengths.items()}}
 
 
 CASES = {
@@ -87,6 +95,8 @@ CASES = {
     "kept": ({f"{KEPT}, r = {500 * factor * sum(KEPT_RADII):.3g} mm": dict(
         rock=KEPT, radius_min=factor * KEPT_RADII[0], radius_max=factor * KEPT_RADII[1]) for factor in (2.0, 1.0, 0.5)},
              (1, 2, 3, 4, 5), (0.0,)),
+    "powers": ({f"strengths as radius^{POWER:g}, r = {radius:g} mm": at_size(ROCK, factor, POWER)
+                for radius, factor in FINENESS.items()}, (1, 2, 3, 4, 5), (0.0,)),
     "relations": ({f"kt/kn = {ratio:g}, gap {gap:g} mm": dict(ROCK, kt=ratio * 20e9, bonding_gap=1e-3 * gap)
                    for gap in (0.0, 0.1, 0.2) for ratio in (0.05, 0.2, 0.4, 0.7, 1.0)}, (1, 2, 3), (0.0,)),
 }
@@ -103,15 +113,21 @@ def tests(campaign, values, seed):
     box, size = {"resolution": (SMALL_BOX, SMALL_SIZE), "softening": (LARGE_BOX, None),
                  "kept": (KEPT_BOX, KEPT_SIZE)}.get(campaign, (BOX, SIZE))
     if campaign == "kept":
-        factor = values["radius_max"] / KEPT_RADII[1]
-        box, size = {side: factor * length for side, length in box.items()}, factor * size
+        box, size = _times(box, values["radius_max"] / KEPT_RADII[1]), values["radius_max"] / KEPT_RADII[1] * size
+    elif campaign == "powers":
+        # The same packings at all radii; but K_IC would depend on the size of its specimen.
+        box, size = _times(box, values["radius_max"] / COARSEST), SMALL_SIZE
     common = dict(values, seed=seed, report="false", snapshot_period=1)
     found = {f"confined {1e-6 * confinement:g}": (CONFINED, dict(common, **box, speed=SPEED, confinement=confinement))
              for confinement in confinements}
     found["tension"] = UNIAXIAL, dict(common, **box, speed=PULL, test="tension")
-    if campaign in ("laws", "resolution", "kept") and not blocked:
+    if campaign in ("laws", "resolution", "kept", "powers") and not blocked:
         found["toughness"] = TOUGHNESS, dict(common, size=size)
     return found
+
+
+def _times(lengths, factor):
+    return {name: factor * length for name, length in lengths.items()}
 
 
 def folder_of(case, test, seed):
@@ -232,6 +248,7 @@ def draw_resolution(found):
 TITLES = {"laws": "What bond laws and rock properties do", "resolution": "The same rock of finer discs",
           "softening": "Fracture energy at the same discs",
           "kept": "A rock whose strengths follow the radius of its discs",
+          "powers": "Bare discs whose strengths follow the radius",
           "relations": "Dimensionless relations"}
 
 
