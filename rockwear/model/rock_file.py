@@ -289,7 +289,7 @@ class RockPresets(Presets):
         found = {name: part.parameters[name] for name in part.parameters if self.only is None or name in self.only}
         for name in found:
             require(name in values, "rock", f"{value}, {kind}.parameters.{name} = {found[name]}",
-                    "a parameter of this scene (--help lists them)")
+                    "a known parameter (--help lists them)")
         ratio = size({name: values[name] for name in RADII[kind]}) / size(part.resolution)
         powers = {name: self.declared[name].size_power[DIMENSION[kind]] + found.get(f"{name}_power", 0.0)
                   for name in found}

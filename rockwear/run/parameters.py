@@ -71,7 +71,7 @@ def _advice(name, known):
     if renamed:
         return f"given as {renamed[0]}, its name since {RENAMED_IN}"
     close = difflib.get_close_matches(name, known, n=1)
-    return f"a parameter of this scene{f'; did you mean {close[0]}' if close else ''} (--help lists them)"
+    return f"a known parameter{f'; did you mean {close[0]}' if close else ''} (--help lists them)"
 
 
 def _word(value):

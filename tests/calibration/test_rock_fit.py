@@ -270,7 +270,7 @@ BRITTLE = {"bond_law": "brittle"}
     ({"jobs": 0}, "jobs = 0: must be a whole number of at least 1"),
     ({"radius_min": 1}, "radius_min = 1 m: must be between 1e-06 and 0.1"),
     ({"bond_law": "padova"}, "bond_law = padova: must be one of"),
-    ({"uc": 3}, "uc = 3: must be a parameter of this scene; did you mean ucs")])
+    ({"uc": 3}, "uc = 3: must be a known parameter; did you mean ucs")])
 def test_targets_that_cannot_be_are_refused_in_one_line(changes, error, capsys):
     given = {name: value for name, value in {**GIVEN, **changes}.items() if value is not None}
     assert rock_fit.main([word for name, value in given.items() for word in (f"--{name}", str(value))]) == 2

@@ -219,5 +219,5 @@ def test_a_scene_that_the_rock_has_nothing_for(tmp_path):
     rock = written(tmp_path, changed("space", None))
     with pytest.raises(ParameterError, match="must be a rock with a part for the space: .* plane alone"):
         read(SPACE, "--rock", rock)
-    with pytest.raises(ParameterError, match="plane.parameters.porosity = 0.1: must be a parameter of this scene"):
+    with pytest.raises(ParameterError, match="plane.parameters.porosity = 0.1: must be a known parameter"):
         read([SPECIMEN.without("porosity"), BONDS], "--rock", rock)

@@ -56,10 +56,10 @@ def test_every_parameter_gets_a_value_in_the_order_of_its_declaration():
 
 
 @pytest.mark.parametrize("words, error", [
-    ("--velocty 4", "velocty = 4: must be a parameter of this scene; did you mean velocity (--help lists them)"),
-    ("--wear_accel 4", "wear_accel = 4: must be a parameter of this scene; did you mean wear_acceleration "
+    ("--velocty 4", "velocty = 4: must be a known parameter; did you mean velocity (--help lists them)"),
+    ("--wear_accel 4", "wear_accel = 4: must be a known parameter; did you mean wear_acceleration "
                        "(--help lists them)"),
-    ("--zzz", "zzz = : must be a parameter of this scene (--help lists them)"),
+    ("--zzz", "zzz = : must be a known parameter (--help lists them)"),
     ("--kn", "kn = nothing N/m: must be given a value"), ("--kn --kt 3", "kn = nothing N/m: must be given a value"),
     ("kn 3", "argument = kn: must be of the form --name value"),
     ("-kn 3", "argument = -kn: must be of the form --name value"),
@@ -144,7 +144,7 @@ def test_presets_give_defaults_one_after_the_other(words, height, width):
     ("--law damage", "law = damage: must be given as bond_law, its name since 0.2"),
     ("--steel MET71", "steel = MET71: must be given as hardness_table, its name since 0.2"),
     ("--bond_conductance M", "bond_conductance = M: must be given as half_bar, its name since 0.2"),
-    ("--arm 0.7", "arm = 0.7: must be a parameter of this scene (--help lists them)")])
+    ("--arm 0.7", "arm = 0.7: must be a known parameter (--help lists them)")])
 def test_old_names_are_answered_with_the_new_ones(words, error):
     with pytest.raises(ParameterError) as caught:
         read(words)

@@ -69,7 +69,7 @@ BROKEN_RULES = [
     ({"heat_period": 0}, "heat_period = 0 s: must be greater than 0"),
     ({"heat": "maybe"}, "heat = maybe: must be true or false"),
     ({"checkpoint_interval": 0}, "checkpoint_interval = 0 s: must be greater than 0"),
-    ({"velocty": 4}, "velocty = 4: must be a parameter of this scene; did you mean velocity"),
+    ({"velocty": 4}, "velocty = 4: must be a known parameter; did you mean velocity"),
     ({"out": 300 * "n"}, "nnn: must be a folder that can be written (File name too long)"),
     ({"out": "/proc/nowhere"}, "out = /proc/nowhere: must be a folder that can be written"),
     ({"resume": "true"}, "must be an existing checkpoint: there is none to resume from"),

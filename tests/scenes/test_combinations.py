@@ -307,7 +307,7 @@ def test_combinations_that_make_no_sense_are_refused_in_a_line(tmp_path):
         (dict(heat="true", hardness=0, bond_conductance="bar"),
          "bond_conductance = bar: must be voronoi for a tool in space"),
         (dict(rock_conductivity=1), "rock_conductivity = 1 W/mK: must be left out with heat = false")]),
-    ("granular_3d", {}, [(dict(heat="true"), "heat = true: must be a parameter of this scene")])])
+    ("granular_3d", {}, [(dict(heat="true"), "heat = true: must be a known parameter")])])
 def test_parameters_of_parts_that_are_not_there_are_refused(tmp_path, name, usual, cases):
     words = [arguments({**usual, **values, "out": tmp_path / "out"}) for values, _ in cases]
     found = refusals(script(name), tmp_path, words)

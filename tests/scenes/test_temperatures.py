@@ -104,7 +104,7 @@ def test_bad_input_ends_in_one_line(tmp_path):
     cases = [({"velocities": "4,fast"}, "velocities = fast"),
              ({"velocities": "4,0"}, "velocities = 0 m/s: must be greater than 0"),
              ({"wear_velocity": 0.5}, "wear_velocity = 0.5 m/s: must be one of velocities = 4,0.4,0.04"),
-             *(({name: value}, f"{name} = {value}: must be a parameter of this scene") for name, value in (
+             *(({name: value}, f"{name} = {value}: must be a known parameter") for name, value in (
                  ("cycles", 3), ("heat", "false"), ("shank", "fixed"), ("time_scale", 2), ("tool", "segments")))]
     said = refusals(RIPPER, tmp_path, [arguments({**PASSES, **values, "out": tmp_path / "out"}) for values, _ in cases])
     for (_, words), case in zip(cases, said):
