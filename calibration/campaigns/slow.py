@@ -112,6 +112,9 @@ def figure(found):
                                            for speed in speeds]).T
                 axes.errorbar(speeds, values, errors, fmt="o-", color=colour, capsize=3, label=scene)
         axes.set(xscale="log", xlabel="speed of the mechanics / m/s", ylabel=heading.replace(", ", " / "))
+        present = sorted({speed for _, speed in found})
+        axes.set_xticks(present, [f"{speed:g}" for speed in present])
+        axes.minorticks_off()
         axes.set_ylim(bottom=0)
     panels[0].legend()
     return drawn
