@@ -112,11 +112,13 @@ def tests(campaign, values, seed):
     confinements, blocked = CASES[campaign][2], values.get("rotation")
     box, size = {"resolution": (SMALL_BOX, SMALL_SIZE), "softening": (LARGE_BOX, None),
                  "kept": (KEPT_BOX, KEPT_SIZE)}.get(campaign, (BOX, SIZE))
-    if campaign == "kept":
-        box, size = _times(box, values["radius_max"] / KEPT_RADII[1]), values["radius_max"] / KEPT_RADII[1] * size
-    elif campaign == "powers":
-        # The same packings at all radii; but K_IC would depend on the size of its specimen.
-        box, size = _times(box, values["radius_max"] / COARSEST), SMALL_SIZE
+    coarsest = {"kept": KEPT_RADII[1], "powers": COARSEST}.get(campaign)
+    if coarsest:
+        # The same packings at all radii.
+        factor = values["radius_max"] / coarsest
+        box = {side: factor * length for side, length in box.items()}
+        # K_IC depends on the size of its specimen: that of one rock is told by one size.
+        size = SMALL_SIZE if campaign == "powers" else factor * size
     common = dict(values, seed=seed, report="false", snapshot_period=1)
     found = {f"confined {1e-6 * confinement:g}": (CONFINED, dict(common, **box, speed=SPEED, confinement=confinement))
              for confinement in confinements}
@@ -124,10 +126,6 @@ def tests(campaign, values, seed):
     if campaign in ("laws", "resolution", "kept", "powers") and not blocked:
         found["toughness"] = TOUGHNESS, dict(common, size=size)
     return found
-
-
-def _times(lengths, factor):
-    return {name: factor * length for name, length in lengths.items()}
 
 
 def folder_of(case, test, seed):

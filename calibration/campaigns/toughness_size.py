@@ -27,10 +27,10 @@ ROCKS = {"cohesive": {**rock_laws.ROCK, **COARSE}, "grains, edge 3 mm": {**rock_
 OVER_RADIUS = 27, 53, 107
 """Sizes W of the specimens over the largest radius; the smallest is what a fit takes at least, and the largest has
 some 7,000 discs."""
-QUANTITIES = {"K_IC, MPa√m": ("fracture_toughness", 1e-6), "G_f, J/m²": ("fracture_energy", 1.0),
-              "K at the peak force, MPa√m": ("peak_toughness", 1e-6)}
+DRIVEN, PEAK = "K_IC, MPa√m", "K at the peak force, MPa√m"
+QUANTITIES = {DRIVEN: ("fracture_toughness", 1e-6), "G_f, J/m²": ("fracture_energy", 1.0),
+              PEAK: ("peak_toughness", 1e-6)}
 """{heading: (result, its unit)}."""
-PEAK = "K at the peak force, MPa√m"
 
 
 def sizes(rock):
@@ -40,7 +40,7 @@ def sizes(rock):
 
 def plan(rocks):
     """{(rock, W, seed): (folder, parameters)}, the small ones first."""
-    return {(rock, size, seed): (f"{rock_laws.folder_of(rock, f'{1e3 * size:g}mm', seed)}",
+    return {(rock, size, seed): (rock_laws.folder_of(rock, f"{1e3 * size:g}mm", seed),
                                  dict(ROCKS[rock], size=size, seed=seed, report="false", snapshot_period=1))
             for number in range(len(OVER_RADIUS)) for seed in SEEDS for rock in rocks for size in [sizes(rock)[number]]}
 
@@ -80,7 +80,7 @@ def figure(found):
     """K at the peak force and from the energy, over the size, a panel a rock."""
     drawn, panels = plots.canvas(3 * len(found) + 1, 4, 1, len(found))
     for axes, (rock, of) in zip(panels, found.items()):
-        for heading, colour in zip(("K_IC, MPa√m", PEAK), palette.OTHER_LINES):
+        for heading, colour in zip((DRIVEN, PEAK), palette.OTHER_LINES):
             values = [sized[heading] for sized in of.values()]
             mean, deviation = [list(map(of_packings, values)) for of_packings in (np.mean, np.std)]
             axes.errorbar([1e3 * size for size in of], mean, deviation, fmt="o-", color=colour, capsize=3,
