@@ -6,6 +6,7 @@ their folder (`record`). Conclusions stand in files that no command writes (cali
 """
 import datetime
 import json
+import math
 import platform
 import shlex
 import subprocess
@@ -45,6 +46,18 @@ def table(columns, rows):
     """Lines of a table in Markdown, an empty one at its end. columns: the header's cells."""
     return [f"| {' | '.join(columns)} |", "|---" * len(columns) + "|",
             *(f"| {' | '.join(map(str, row))} |" for row in rows), ""]
+
+
+def mean_and_error(values):
+    """(mean, standard error) of (n,) numbers; nan for the error of one."""
+    values = np.asarray(values, float)
+    return values.mean(), values.std(ddof=1) / math.sqrt(len(values)) if len(values) > 1 else math.nan
+
+
+def mean_cell(values):
+    """A table's cell: the mean of (n,) numbers, with its standard error where there are several."""
+    mean, error = mean_and_error(values)
+    return f"{mean:.3g}" + (f" ± {error:.2g}" if math.isfinite(error) else "")
 
 
 def versions_of(runs):

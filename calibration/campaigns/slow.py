@@ -7,7 +7,6 @@ The same way, 40 mm, of the same packings at SPEEDS; --full adds the source's ow
 repeated, so that an interrupted campaign resumes. --read starts no run and evaluates those that exist. Writes into DIR
 slow.md (a table a scene), slow.png and provenance.json.
 """
-import math
 import sys
 
 import matplotlib
@@ -70,15 +69,9 @@ def measured(folder, runs):
     return found
 
 
-def mean(values):
-    """(mean, standard error) of (n,) numbers; nan for the error of one."""
-    values = np.asarray(values, float)
-    return values.mean(), values.std(ddof=1) / math.sqrt(len(values)) if len(values) > 1 else math.nan
-
-
 def told(changes):
     """Whether the mean of these changes (n,) is told from nothing by chance (Student's t)."""
-    value, error = mean(changes)
+    value, error = generated.mean_and_error(changes)
     return len(changes) > 2 and abs(value) > stats.t.ppf(1 - 0.5 * CHANCE, len(changes) - 1) * error
 
 
@@ -92,13 +85,8 @@ def rows(found, scene):
         common = packings.keys() & slowest.keys()
         differs = [heading.split(",")[0] for heading in QUANTITIES if told(
             [packings[seed][heading] - slowest[seed][heading] for seed in common])]
-        yield [f"{speed:g}", len(packings), *(_cell([one[heading] for one in packings.values()])
+        yield [f"{speed:g}", len(packings), *(generated.mean_cell([one[heading] for one in packings.values()])
                                               for heading in QUANTITIES), ", ".join(differs) or "–"]
-
-
-def _cell(values):
-    value, error = mean(values)
-    return f"{value:.3g}" + (f" ± {error:.2g}" if math.isfinite(error) else "")
 
 
 def figure(found):
@@ -108,8 +96,8 @@ def figure(found):
         for scene, colour in zip(SCENES, palette.OTHER_LINES):
             speeds = sorted(speed for one, speed in found if one == scene)
             if speeds:
-                values, errors = np.array([mean([one[heading] for one in found[scene, speed].values()])
-                                           for speed in speeds]).T
+                values, errors = np.array([generated.mean_and_error(
+                    [one[heading] for one in found[scene, speed].values()]) for speed in speeds]).T
                 axes.errorbar(speeds, values, errors, fmt="o-", color=colour, capsize=3, label=scene)
         axes.set(xscale="log", xlabel="speed of the mechanics / m/s", ylabel=heading.replace(", ", " / "))
         present = sorted({speed for _, speed in found})

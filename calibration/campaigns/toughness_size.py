@@ -57,15 +57,10 @@ def measured(folder, rocks):
     return {rock: dict(sorted(of.items())) for rock, of in found.items()}
 
 
-def _cell(values):
-    values = np.asarray(values)
-    return f"{values.mean():.3g}" + (
-        f" ± {values.std(ddof=1) / math.sqrt(len(values)):.2g}" if len(values) > 1 else "")
-
-
 def rows(of):
     """Rows of the table of a rock."""
-    return [[f"{1e3 * size:g}", len(values[PEAK]), *map(_cell, values.values())] for size, values in of.items()]
+    return [[f"{1e3 * size:g}", len(values[PEAK]), *map(generated.mean_cell, values.values())]
+            for size, values in of.items()]
 
 
 def without_end(of):
