@@ -16,6 +16,8 @@ LOOK_PERIOD = 10
 """Steps between looks at all bonds."""
 STRAIGHT = 10
 """Points on the path that a bond is taken to have come before the first look that finds it softened or slipped."""
+LOOSE = 0.5
+"""Damage from which on the slip of a bond that slip does not damage is taken out of its strains in every step."""
 SPENT = 1.0 - 1e-6
 """Damage of a bond that slip has broken: YADE keeps it, as a contact with friction, until it opens."""
 
@@ -42,7 +44,7 @@ _VECTORS = {"normal": lambda contact: contact.geom.normal, "increment": lambda c
 """Vectors of a bond that looks read, and partly write, for many bonds at once: looks at single ones cost a third of
 YADE's own time."""
 _GROUPS = {"slip": ("slipped", "shear_force"), "looked_at": ("slipped", "omega", "crushed"),
-           "limits": ("onset", "fracture"), "damage": ("omega", "kappa"),
+           "loose": ("strain", "slipped", "shear_force"), "limits": ("onset", "fracture"), "damage": ("omega", "kappa"),
            "forces": ("normal", "normal_force", "shear_force"), "moved": ("increment", "radius1", "radius2", "overlap"),
            **crushing.GROUPS}
 """What is read together."""
@@ -194,6 +196,8 @@ class CpmBonds(BondLog):
         self.places = Places(count, vectors=_VECTORS, groups=_GROUPS, numbers=_numbers())
         self.there = _Kept(self.places, "looked_at", lambda: np.flatnonzero(self.status != SEPARATED))
         self.slipping = _Kept(self.places, "slip", lambda: np.flatnonzero(self.active & (self.status != SEPARATED)))
+        self.loose = _Kept(self.places, "loose", lambda: np.flatnonzero(
+            (self.slip_end == math.inf) & (self.omega > LOOSE) & (self.status == INTACT)))
         self.crushing = crushing.Crushing(laws=self.laws, hardening=self.law.hardening, places=self.places)
         self.rising = self._weakened(np.zeros(0, int))
         """Of the bonds whose damage rose between the last two looks, by opening: every step sets their cohesion."""
@@ -241,8 +245,8 @@ class CpmBonds(BondLog):
         self._prepare()
 
     def _follow(self, numbers):
-        self.there.forget()
-        self.slipping.forget()
+        for kept in (self.there, self.slipping, self.loose):
+            kept.forget()
         found = []
         for n in numbers.tolist():
             interaction = O.interactions[tuple(self.pairs[n].tolist())]
@@ -257,9 +261,17 @@ class CpmBonds(BondLog):
             self._sample()
         if O.iter % self.between_looks == 0:
             self.look_at_all()
+        _weaken(*self.rising)
+        self._let_slip()
         if (O.iter + 1) % self.between_samples == 0:
             self._prepare()
-        _weaken(*self.rising)
+
+    def _let_slip(self):
+        """Leave loose bonds the elastic part of their shear strains."""
+        numbers, places = self.loose.now()
+        if len(numbers):
+            MEMORY[places[:3]] = MEMORY.take(places[6:], mode="wrap") / (-self.kt[numbers] * self.lengths[numbers])
+            MEMORY[places[3:6]] = 0.0
 
     def _weakened(self, numbers):
         """What `_weaken` takes of these bonds (k,)."""
@@ -332,6 +344,7 @@ class CpmBonds(BondLog):
     def _soften(self, numbers, omega):
         """What YADE has raised the damage of these bonds to."""
         before, self.omega[numbers] = self.omega[numbers], omega
+        self.loose.forget()
         rises = omega > before
         rising, gone = numbers[rises], numbers[rises & (omega >= 1.0)]
         of = dict(Rn=self.Rn[rising], onset=self.onset[rising], gone=self.gone[rising])
@@ -396,8 +409,8 @@ class CpmBonds(BondLog):
         if self.status[n] != SEPARATED:
             self.parted.append(n)
         self.status[n] = SEPARATED
-        self.there.forget()
-        self.slipping.forget()
+        for kept in (self.there, self.slipping, self.loose):
+            kept.forget()
         self.contacts.pop(n, None)
         self.lengths[n] = 0.0
 

@@ -64,6 +64,11 @@ def test_looks_turn_the_slip_of_a_pair_that_rotates(checks):
         assert found[period]["force"] < error < 0.2 * missed and abs(found[period]["energy"]) < 1e-3 + rest
 
 
+def test_a_bond_that_slid_without_shear_strength_has_none_stored_when_it_closes(checks):
+    """YADE's own step takes less slip than there was, and nothing where the force is 0."""
+    assert checks["closed again"]["1"] < 1e-12 and checks["closed again"]["10"] < 1e-3
+
+
 def test_slip_damages_as_the_law_says_late_by_a_look(checks):
     """Errors of the first order in the time between looks."""
     found = checks["damaged by slip"]

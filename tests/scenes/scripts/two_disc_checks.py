@@ -28,6 +28,8 @@ LAWS |= {"Coulomb": Coulomb(**AREA), "cohesive": Cohesive(bond_fracture_energy=0
 SLIPPING, HALF_SLIPPED = (Cohesive(bond_fracture_energy=0.75, bond_shear_energy=G, **AREA) for G in (3.6, 36.0))
 WIDE = Cohesive(bond_fracture_energy=75.0, bond_shear_energy=360.0, **AREA)
 """Opens by 1.2 radii before it is gone: bonds of fine discs do."""
+LASTING = Cohesive(bond_fracture_energy=7.5, **AREA)
+"""Carries tension long after it has no shear strength left, which comes back when it closes."""
 CRUSHING = Cohesive(bond_fracture_energy=0.75, bond_crushing=1.5 * RN, crushing_hardening=0.0, **AREA)
 HARDENING = Cohesive(bond_fracture_energy=0.75, bond_crushing=1.5 * RN, crushing_hardening=0.25, **AREA)
 LAWS["crushing"] = CRUSHING
@@ -145,6 +147,14 @@ def without_realigning(law):
     """The same where no look turns the slip of a bond: YADE's own error."""
     with mock.patch.object(CpmBonds, "act", lambda self: None):
         return looked_at_now_and_then(law, 1)["force"]
+
+
+def closed_again(law, period):
+    """Error of the force of a bond that slides wide open without shear strength, and closes while nobody looks."""
+    knots = [0, 800, 995, 997, 1205, 1207, 1300]
+    un = np.interp(np.arange(knots[-1]), knots, np.array([0.0, 0.3, 0.3, -0.02, 0.25, -0.02, 0.1]) * law.gone)
+    ut = np.interp(np.arange(knots[-1]), [0, 800, 1300], np.array([0.0, 0.0, 0.4]) * law.gone)
+    return deviation(law, drive_pair(law, un, np.column_stack([ut, 0.5 * ut]), period=period))
 
 
 def coulomb_afterwards(law):
@@ -379,6 +389,7 @@ checks = {
     "damaged both ways": {f"{steps} steps, {period}": damaged_both_ways(SLIPPING, steps, period)
                           for steps, period in ((1000, 1), (4000, 1), (4000, 10))},
     "without realigning": without_realigning(LAWS["cohesive"]),
+    "closed again": {period: closed_again(LASTING, period) for period in (1, 10)},
     "coulomb": {name: coulomb_afterwards(LAWS[name]) for name in LINEAR},
     "work": {name: work_until_gone(LAWS[name]) for name in ("damage", "elasto-plastic", "cohesive")},
     "flying": {name: flying_apart(LAWS[name]) for name in ("brittle", "damage", "elasto-plastic", "Coulomb",
