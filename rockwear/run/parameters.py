@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from rockwear.kernels.checks import ParameterError, require
-from rockwear.kernels.parameter import RENAMED_IN, Group, file, flag, text, unmet
+from rockwear.kernels.parameter import RENAMED_IN, Group, file, flag, text, unmet, words
 
 RENAMED = {
     "acceleration": ("wear_acceleration",), "speed_up": ("time_scale",),
@@ -106,7 +106,7 @@ def _metavar(parameter):
     options = getattr(parameter.rule, "options", ("true", "false") if parameter.rule is flag else ())
     if parameter.presets and parameter.presets.metavar:
         return parameter.presets.metavar
-    return "|".join(options) or parameter.unit or {text: "TEXT", file: "FILE"}.get(parameter.rule, "NUMBER")
+    return "|".join(options) or parameter.unit or {text: "TEXT", words: "TEXT", file: "FILE"}.get(parameter.rule, "NUMBER")
 
 
 def _description(parameter, declared):

@@ -26,7 +26,8 @@ WITHOUT = {"width", "height", "grading_factor", "fine_depth", "velocity", "depth
 ROCK = (
     Parameter("full", False, "", flag, "the defaults of scale_factor and backing that give the source's 92,000 discs"),
     Parameter("backing", 0.06, "m", above_zero, "rock behind the path of the pick, fixed at its far side"),
-    Parameter("run_out", 0.06, "m", above_zero, "rock ahead of the pick at the end of the cut, without a window"),
+    Parameter("run_out", 0.06, "m", above_zero, "rock ahead of the pick at the end of the cut",
+              when={"window_ahead": (0.0,)}),
     Parameter("window_behind", 0.0, "m", number(0), "length behind the tip of a window of rock that moves along with "
               "the pick"),
     Parameter("window_ahead", 0.0, "m", number(0), "its length ahead of the tip; 0: no window, all rock is there from "
