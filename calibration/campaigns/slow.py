@@ -48,7 +48,7 @@ QUANTITIES = {"mean force, kN/m": lambda run: 1e-3 * run.result("mean_cutting_fo
 """{heading: number of a run}. Wear is the friction at the tool times a constant."""
 DRAWN = "mean force, kN/m", "friction at the tool, J/m"
 CHANCE = 0.05
-"""How often chance alone may make a change that counts as told."""
+"""How often chance alone may make a change that counts as significant."""
 
 
 def plan(scenes, speeds):
@@ -69,21 +69,21 @@ def measured(folder, runs):
     return found
 
 
-def told(changes):
-    """Whether the mean of these changes (n,) is told from nothing by chance (Student's t)."""
+def significant(changes):
+    """Whether the mean of these changes (n,) differs from nothing significantly (Student's t)."""
     value, error = generated.mean_and_error(changes)
     return len(changes) > 2 and abs(value) > stats.t.ppf(1 - 0.5 * CHANCE, len(changes) - 1) * error
 
 
 def rows(found, scene):
-    """Rows of the table of a scene: means at each speed, and, told from chance, what differs in the same packings from
+    """Rows of the table of a scene: means at each speed, and what differs significantly in the same packings from
     the slowest."""
     speeds = sorted(speed for one, speed in found if one == scene)
     slowest = found[scene, speeds[0]]
     for speed in reversed(speeds):
         packings = found[scene, speed]
         common = packings.keys() & slowest.keys()
-        differs = [heading.split(",")[0] for heading in QUANTITIES if told(
+        differs = [heading.split(",")[0] for heading in QUANTITIES if significant(
             [packings[seed][heading] - slowest[seed][heading] for seed in common])]
         yield [f"{speed:g}", len(packings), *(generated.mean_cell([one[heading] for one in packings.values()])
                                               for heading in QUANTITIES), ", ".join(differs) or "–"]

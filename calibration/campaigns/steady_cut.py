@@ -50,9 +50,9 @@ def write(folder, others):
               "balance over the tool's work, of the worst packing. Minutes on a shared core.", "", *causes(found)]
     if changed := changes(found):
         lines += ["", "## What each changes in the same packings", "", "Mean ± standard error of the differences in "
-                  "the same packing; told: so many standard errors that chance makes as large a change once in "
+                  "the same packing; significant: so many standard errors that chance makes as large a change once in "
                   f"{1 / CHANCE:g} cases (Student's t).", "",
-                  *generated.table(["", "packings in common", *CHANGED, "told"], changed)]
+                  *generated.table(["", "packings in common", *CHANGED, "significant"], changed)]
     if needed := lengths_needed(found):
         lines += ["", "## How long a cut has to be", "", "How far the mean force of one cut is off, by the scatter of "
                   f"packings and by its own record, and how many depths of cut tell it to {100 * ACCURACY:g} %.", "",

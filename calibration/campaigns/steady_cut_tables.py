@@ -18,7 +18,7 @@ CHANGED = {"mean Fc, kN/m": "force", "mean Fn, kN/m": "pressed", "peak / mean": 
            "overbreak / depth": "overbreak", "way under load": "loaded", "friction work, kN/m": "friction"}
 """{heading: quantity} of which it is said how a cause changes them."""
 CHANCE = 0.05
-"""How often chance alone may make a change that counts as told."""
+"""How often chance alone may make a change that counts as significant."""
 TOOL_FRICTION = 0.3
 """Of steel on rock, the default of the cut."""
 NISHIMATSU = 11.3, -0.18
@@ -102,7 +102,7 @@ def relations(found):
 
 
 def changes(found):
-    """Rows of a table: how much a cause changes the cut in the same packings, and what of it is told from chance."""
+    """Rows of a table: how much a cause changes the cut in the same packings, and what of it is significant."""
     rows = []
     for case, row in found.items():
         known = found.get(changed_from(case))
@@ -110,10 +110,11 @@ def changes(found):
             by = {words: (difference(row, known, what), known[what].value) for words, what in CHANGED.items()}
             common = len(row["each"].keys() & known["each"].keys())
             least = stats.t.ppf(1 - 0.5 * CHANCE, common - 1) if common > 2 else math.inf
-            told = [words for words, (change, _) in by.items() if abs(change.value) > least * change.standard_error]
+            significant = [words for words, (change, _) in by.items()
+                           if abs(change.value) > least * change.standard_error]
             rows.append([case, common,
                          *(f"{shown(change)} ({100 * change.value / value:+.0f} %)" for change, value in by.values()),
-                         ", ".join(told) or "–"])
+                         ", ".join(significant) or "–"])
     return rows
 
 

@@ -134,6 +134,14 @@ def _weaken(omega, cohesion, coupling, Rt):
         MEMORY[cohesion] = Rt / (1.0 - coupling * MEMORY.take(omega, mode="wrap"))
 
 
+def _let_slip(numbers, places, kt, lengths):
+    """Leave loose bonds (k,) the elastic part of their shear strains. places: of the group "loose"; kt (N/m), lengths
+    (m): of all bonds."""
+    if len(numbers):
+        MEMORY[places[:3]] = MEMORY.take(places[6:], mode="wrap") / (-kt[numbers] * lengths[numbers])
+        MEMORY[places[3:6]] = 0.0
+
+
 class _Kept:
     """The bonds that a function gives, and where in memory lies what `name` says of them, until `forget`."""
 
@@ -150,6 +158,11 @@ class _Kept:
             numbers = self.bonds()
             self.found = numbers, self.places.of(self.name, numbers)
         return self.found
+
+
+def _forget(*kept):
+    for one in kept:
+        one.forget()
 
 
 class CpmBonds(BondLog):
@@ -174,9 +187,10 @@ class CpmBonds(BondLog):
 
     C++ erases a bond that has opened to its end; if its particles meet again, that is a plain contact, by their radii
     (which must not overlap when they are bonded). YADE turns the total shear strain of a bond with the contact, but not
-    its plastic part: a look takes the slip so far out of both. Neither damage nor strains are in YADE's saved scenes:
-    `state` holds them, and `erase_separated`, at every canonical point, sets the damage from omega, which is all that a
-    restart knows.
+    its plastic part: a look takes the slip so far out of both. Of a bond with little or no shear strength left YADE
+    takes too little slip, and pushes with the rest when it closes: that of loose bonds is taken out in every step.
+    Neither damage nor strains are in YADE's saved scenes: `state` holds them, and `erase_separated`, at every canonical
+    point, sets the damage from omega, which is all that a restart knows.
 
     period: steps between two looks; 1: looks and samples in every step. The engine itself is visited in every step.
     """
@@ -245,8 +259,7 @@ class CpmBonds(BondLog):
         self._prepare()
 
     def _follow(self, numbers):
-        for kept in (self.there, self.slipping, self.loose):
-            kept.forget()
+        _forget(self.there, self.slipping, self.loose)
         found = []
         for n in numbers.tolist():
             interaction = O.interactions[tuple(self.pairs[n].tolist())]
@@ -262,16 +275,9 @@ class CpmBonds(BondLog):
         if O.iter % self.between_looks == 0:
             self.look_at_all()
         _weaken(*self.rising)
-        self._let_slip()
+        _let_slip(*self.loose.now(), self.kt, self.lengths)
         if (O.iter + 1) % self.between_samples == 0:
             self._prepare()
-
-    def _let_slip(self):
-        """Leave loose bonds the elastic part of their shear strains."""
-        numbers, places = self.loose.now()
-        if len(numbers):
-            MEMORY[places[:3]] = MEMORY.take(places[6:], mode="wrap") / (-self.kt[numbers] * self.lengths[numbers])
-            MEMORY[places[3:6]] = 0.0
 
     def _weakened(self, numbers):
         """What `_weaken` takes of these bonds (k,)."""
@@ -409,8 +415,7 @@ class CpmBonds(BondLog):
         if self.status[n] != SEPARATED:
             self.parted.append(n)
         self.status[n] = SEPARATED
-        for kept in (self.there, self.slipping, self.loose):
-            kept.forget()
+        _forget(self.there, self.slipping, self.loose)
         self.contacts.pop(n, None)
         self.lengths[n] = 0.0
 
@@ -458,6 +463,5 @@ class CpmBonds(BondLog):
         super().restore(state)
         for name in ("dissipated", "by_slip", "slip_taken", "omega", "active"):
             setattr(self, name, state[name].copy())
-        self.crushing.strains = state["crushed"].copy()
-        there = np.flatnonzero(self.status != SEPARATED)
+        self.crushing.strains, there = state["crushed"].copy(), np.flatnonzero(self.status != SEPARATED)
         self.strains = there, self.omega[there], state["strain"].T, state["plastic_strain"].T, state["crushed"][there]

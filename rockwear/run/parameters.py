@@ -106,7 +106,8 @@ def _metavar(parameter):
     options = getattr(parameter.rule, "options", ("true", "false") if parameter.rule is flag else ())
     if parameter.presets and parameter.presets.metavar:
         return parameter.presets.metavar
-    return "|".join(options) or parameter.unit or {text: "TEXT", words: "TEXT", file: "FILE"}.get(parameter.rule, "NUMBER")
+    named = {text: "TEXT", words: "TEXT", file: "FILE"}
+    return "|".join(options) or parameter.unit or named.get(parameter.rule, "NUMBER")
 
 
 def _description(parameter, declared):
