@@ -11,6 +11,8 @@ from rockwear.model.rock_file import FORMAT, PROPERTIES
 from rockwear.report import plots
 
 SCALES = {"Pa": (1e6, "MPa"), "Pa sqrt(m)": (1e6, "MPa sqrt(m)"), "": (1, "")}
+NEAR = 0.05
+"""Difference of UCS over tensile strength from what was asked for, over it, that is not for want of other grains."""
 
 
 def shown(observable, value):
@@ -61,12 +63,24 @@ def answer(found, micro):
     if any(word.startswith("length") for word in bounds):
         lines.append("The bonds are all but brittle: toughness then grows with the strength and the square root of the "
                      "radius. A less tough rock takes smaller radii.")
+    lines += _grains_needed(found, micro, missed)
     if found.not_failed:
         lines.append("In some tests stress had not fallen by a fifth when they ended: "
                      f"{', '.join(found.not_failed)}. Their strengths are the largest stress up to there.")
     if found.failures:
         lines.append(f"Left out: {'; '.join(found.failures)}.")
     return lines
+
+
+def _grains_needed(found, micro, missed):
+    """Lines on grains of another size, where UCS over tensile strength is what was missed."""
+    over = {o.name: one.mean / o.target for o, one in found.verdicts.items()}
+    ratio = over["ucs"] / over["tensile_strength"]
+    if not {o.name for o in missed} & {"ucs", "tensile_strength"} or abs(ratio - 1) < NEAR:
+        return []
+    return [f"UCS over tensile strength is {ratio:.2f} of what was asked for. It rises with the grain_edge, which is "
+            f"{micro.given.get('grain_edge', 0.0):g} m here: a {'longer' if ratio < 1 else 'shorter'} one may come "
+            "nearer."]
 
 
 def envelope(found, micro):

@@ -48,6 +48,9 @@ GRAINS = (5.0, 0.0), (11.0, 1.8), (math.inf, 2.2)
 """(largest UCS over tensile strength, grain_edge over the mean radius that can give it). Without grains and with the
 cohesive law the ratio is 6 to 7 for any shear strength; at an edge of 1.8 radii it is 6.2, 8.1 and 13.0 for shear over
 tensile strengths of 1.5, 3 and 7 (525 discs, three packings)."""
+FRICTION_FITTED = 1.2
+"""Ratio of such strengths to what a rock reaches whose confined strengths ask for little friction in its bonds: 10.9 to
+9.3 at a friction of 0.12, shear over tension of 4.4 and an edge of 1.8 radii (ten packings)."""
 MOST_EDGE = 12.0
 """Mean radii, edge of grains of which the smallest specimens of a fit hold five."""
 CONFINEMENTS = 0.1, 0.3
@@ -343,7 +346,7 @@ def given_of(values, targets, start=None):
     if edge < 0 and start:
         edge = start.get("grain_edge", 0.0)
     elif edge < 0:
-        ratio = targets.ucs / targets.tensile_strength
+        ratio = targets.ucs / targets.tensile_strength * (FRICTION_FITTED if targets.confined() else 1.0)
         edge = (values["radius_min"] + values["radius_max"]) / 2 * next(part for most, part in GRAINS if ratio <= most)
     given = {**{name: values[name] for name in GIVEN}, "rock_density": values["density"]}
     found = {name: start.get(name, value) if value == OF_ROCK[name].default else value for name, value in given.items()}

@@ -131,6 +131,7 @@ def test_a_strength_that_the_law_cannot_reach_is_said_and_the_others_are_met(tmp
     assert missed and missed <= {"ucs", "tensile_strength"}
     words = rock_page.answer(found, micro)[0]
     assert "of 4 targets are met" in words and "Not reached: " in words and "instead of" in words
+    assert any("a longer one may come nearer" in line for line in rock_page.answer(found, micro))
 
 
 def test_a_rock_less_tough_than_its_discs_is_told_to_take_smaller_ones():
@@ -479,6 +480,7 @@ def test_a_confinement_at_which_discs_would_overlap_is_refused_before_the_first_
 
 @pytest.mark.parametrize("changes, edge", [
     ({"tensile_strength": 15e6}, 0.0), ({}, 2.25e-3), ({"tensile_strength": 5e6}, 2.75e-3),
+    ({"tensile_strength": 6e6}, 2.25e-3), ({"tensile_strength": 6e6, "friction_angle": 40}, 2.75e-3),
     ({"radius_min": 2e-3, "radius_max": 3e-3}, 4.5e-3), ({"grain_edge": 1e-3}, 1e-3), ({"grain_edge": 0}, 0.0)])
 def test_grains_are_chosen_by_the_ratio_of_the_strengths_unless_they_are_given(changes, edge):
     words = [word for name, value in {**GIVEN, **changes}.items() for word in (f"--{name}", str(value))]
