@@ -189,7 +189,7 @@ def figure(found, micro):
     axes.set_xticks([*range(len(names)), len(names) - 0.4], [*names, "packings"], rotation=60)
     axes.axhspan(0.95, 1.05, color="0.9", zorder=0)
     axes.set(ylabel="measured / target")
-    axes.legend(fontsize=8)
+    axes.legend(fontsize=8, ncol=4, loc="lower center", bbox_to_anchor=(0.5, 1.0))
     if confined:
         draw_envelope(panels[1], found, micro, confined)
     return drawn
