@@ -122,6 +122,7 @@ REFUSED = [
     (dict(window_ahead=0.1, window_behind=0.1), "window_ahead = 0.1"),
     (dict(window_ahead=0.2, window_behind=0.05), "window_behind = 0.05"),
     (dict(window_behind=0.05), "window_behind = 0.05 m: must be left out without window_ahead"),
+    (dict(window_ahead=0.2, window_behind=0.1, run_out=0.05), "run_out = 0.05 m: must be left out with window_ahead"),
     (dict(window_ahead=0.12, window_behind=0.07), "window_ahead = 0.12")]
 
 
