@@ -16,6 +16,7 @@ from collections import Counter
 from pathlib import Path
 
 import numpy as np
+from scipy.special import stdtrit
 
 from rockwear import __version__
 
@@ -23,6 +24,8 @@ ROOT = Path(__file__).resolve().parents[1]
 MANIFEST = "provenance.json"
 WIDTH = 120
 """Of lines of text in Markdown."""
+CHANCE = 0.05
+"""How often chance alone may make a change that counts as significant."""
 
 
 def _said(*command):
@@ -58,6 +61,12 @@ def mean_cell(values):
     """A table's cell: the mean of (n,) numbers, with its standard error where there are several."""
     mean, error = mean_and_error(values)
     return f"{mean:.3g}" + (f" ± {error:.2g}" if math.isfinite(error) else "")
+
+
+def significant(change, error, packings):
+    """Whether chance makes as large a mean change, of this standard error over so many packings, in fewer than CHANCE
+    of the cases (Student's t). Of less than three packings nothing is known."""
+    return packings > 2 and abs(change) > stdtrit(packings - 1, 1 - 0.5 * CHANCE) * error
 
 
 def versions_of(runs):

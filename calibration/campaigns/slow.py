@@ -11,7 +11,6 @@ import sys
 
 import matplotlib
 import numpy as np
-from scipy import stats
 
 from calibration import generated
 from calibration.campaigns.runs import Runs, command_line, wait_for
@@ -47,8 +46,6 @@ QUANTITIES = {"mean force, kN/m": lambda run: 1e-3 * run.result("mean_cutting_fo
               "cracks": lambda run: run.result("tensile_cracks") + run.result("shear_cracks")}
 """{heading: number of a run}. Wear is the friction at the tool times a constant."""
 DRAWN = "mean force, kN/m", "friction at the tool, J/m"
-CHANCE = 0.05
-"""How often chance alone may make a change that counts as significant."""
 
 
 def plan(scenes, speeds):
@@ -69,12 +66,6 @@ def measured(folder, runs):
     return found
 
 
-def significant(changes):
-    """Whether the mean of these changes (n,) differs from nothing significantly (Student's t)."""
-    value, error = generated.mean_and_error(changes)
-    return len(changes) > 2 and abs(value) > stats.t.ppf(1 - 0.5 * CHANCE, len(changes) - 1) * error
-
-
 def rows(found, scene):
     """Rows of the table of a scene: means at each speed, and what differs significantly in the same packings from
     the slowest."""
@@ -83,8 +74,10 @@ def rows(found, scene):
     for speed in reversed(speeds):
         packings = found[scene, speed]
         common = packings.keys() & slowest.keys()
-        differs = [heading.split(",")[0] for heading in QUANTITIES if significant(
-            [packings[seed][heading] - slowest[seed][heading] for seed in common])]
+        changes = {heading: [packings[seed][heading] - slowest[seed][heading] for seed in common]
+                   for heading in QUANTITIES}
+        differs = [heading.split(",")[0] for heading, of in changes.items()
+                   if generated.significant(*generated.mean_and_error(of), len(common))]
         yield [f"{speed:g}", len(packings), *(generated.mean_cell([one[heading] for one in packings.values()])
                                               for heading in QUANTITIES), ", ".join(differs) or "–"]
 
@@ -112,7 +105,7 @@ def write(folder, runs):
     """Table and figure of the runs that exist. -> the table, in Markdown."""
     found = measured(folder, runs)
     lines = ["Mean ± standard error over packings. Differs: from the slowest in the same packings, by more than chance "
-             f"makes once in {1 / CHANCE:g} cases (Student's t).", ""]
+             f"makes once in {1 / generated.CHANCE:g} cases (Student's t).", ""]
     for scene in SCENES:
         if any(one == scene for one, _ in found):
             lines += [f"## {scene}", "", *generated.table(

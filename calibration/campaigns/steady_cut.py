@@ -22,7 +22,7 @@ from calibration.campaigns.steady_cut_cases import AT_DEPTHS, BASE, CASES, EIGHT
 from calibration.campaigns.steady_cut_figures import over_depth, price, resolution
 from calibration.campaigns.steady_cut_numbers import BEGIN, LOAD, keep, kept, of_case, runs_of
 from calibration.campaigns.steady_cut_tables import (
-    ACCURACY, CHANCE, CHANGED, causes, changes, envelope, lengths_needed, relations, settings, theories)
+    ACCURACY, CHANGED, causes, changes, envelope, lengths_needed, relations, settings, theories)
 from rockwear.report import plane, plots
 from rockwear.report.views import cut, steady
 
@@ -51,7 +51,7 @@ def write(folder, others):
     if changed := changes(found):
         lines += ["", "## What each changes in the same packings", "", "Mean ± standard error of the differences in "
                   "the same packing; significant: so many standard errors that chance makes as large a change once in "
-                  f"{1 / CHANCE:g} cases (Student's t).", "",
+                  f"{1 / generated.CHANCE:g} cases (Student's t).", "",
                   *generated.table(["", "packings in common", *CHANGED, "significant"], changed)]
     if needed := lengths_needed(found):
         lines += ["", "## How long a cut has to be", "", "How far the mean force of one cut is off, by the scatter of "

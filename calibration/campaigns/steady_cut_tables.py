@@ -2,7 +2,6 @@
 import math
 
 import numpy as np
-from scipy import stats
 
 from calibration import generated
 from calibration.campaigns.steady_cut_cases import (
@@ -17,8 +16,6 @@ from rockwear.kernels.steady_record import Measured
 CHANGED = {"mean Fc, kN/m": "force", "mean Fn, kN/m": "pressed", "peak / mean": "peaks",
            "overbreak / depth": "overbreak", "way under load": "loaded", "friction work, kN/m": "friction"}
 """{heading: quantity} of which it is said how a cause changes them."""
-CHANCE = 0.05
-"""How often chance alone may make a change that counts as significant."""
 TOOL_FRICTION = 0.3
 """Of steel on rock, the default of the cut."""
 NISHIMATSU = 11.3, -0.18
@@ -109,9 +106,8 @@ def changes(found):
         if known:
             by = {words: (difference(row, known, what), known[what].value) for words, what in CHANGED.items()}
             common = len(row["each"].keys() & known["each"].keys())
-            least = stats.t.ppf(1 - 0.5 * CHANCE, common - 1) if common > 2 else math.inf
             significant = [words for words, (change, _) in by.items()
-                           if abs(change.value) > least * change.standard_error]
+                           if generated.significant(change.value, change.standard_error, common)]
             rows.append([case, common,
                          *(f"{shown(change)} ({100 * change.value / value:+.0f} %)" for change, value in by.values()),
                          ", ".join(significant) or "–"])

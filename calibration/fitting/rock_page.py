@@ -76,7 +76,7 @@ def _grains_needed(found, micro, missed):
     """Lines on grains of another size, where UCS over tensile strength is what was missed."""
     over = {o.name: one.mean / o.target for o, one in found.verdicts.items()}
     ratio = over["ucs"] / over["tensile_strength"]
-    if not {o.name for o in missed} & {"ucs", "tensile_strength"} or abs(ratio - 1) < NEAR:
+    if not {o.name for o in missed} & {"ucs", "tensile_strength"} or not abs(ratio - 1) >= NEAR:
         return []
     return [f"UCS over tensile strength is {ratio:.2f} of what was asked for. It rises with the grain_edge, which is "
             f"{micro.given.get('grain_edge', 0.0):g} m here: a {'longer' if ratio < 1 else 'shorter'} one may come "

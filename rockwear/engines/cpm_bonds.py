@@ -135,8 +135,9 @@ def _weaken(omega, cohesion, coupling, Rt):
 
 
 def _let_slip(numbers, places, kt, lengths):
-    """Leave loose bonds (k,) the elastic part of their shear strains. places: of the group "loose"; kt (N/m), lengths
-    (m): of all bonds."""
+    """Leave loose bonds (k,) the elastic part of their shear strains, as `_take_slip` does, but without the turn into
+    the plane of the contact: that is for looks, this comes in every step. places: of the group "loose"; kt (N/m),
+    lengths (m): of all bonds."""
     if len(numbers):
         MEMORY[places[:3]] = MEMORY.take(places[6:], mode="wrap") / (-kt[numbers] * lengths[numbers])
         MEMORY[places[3:6]] = 0.0
