@@ -233,6 +233,9 @@ def command_line(campaign, cases=(), flags=("--read",)):
     known = *cases, *flags
     (folder,), words = split(words, campaign, " ".join(["DIR", *(f"[{word}]" for word in known), PLACEMENT]),
                              known=known)
+    if "--read" in words and not folder.is_dir():
+        print(f"error: DIR = {folder} must be the folder of a campaign, whose runs --read reads", file=sys.stderr)
+        sys.exit(2)
     return folder, words, where
 
 

@@ -74,3 +74,10 @@ def test_a_python_without_the_packages_is_told_in_one_line_which_one_to_use(comm
     assert done.returncode == 2 and done.stderr.count("\n") == 1
     assert done.stderr.endswith(" has no numpy, scipy, matplotlib: use /usr/bin/python3, whose packages `make setup` "
                                 "installs\n")
+
+
+@pytest.mark.filterwarnings("ignore:.*found in sys.modules:RuntimeWarning")
+@pytest.mark.parametrize("campaign", "grains rock_laws sharp_and_worn slow steady_cut toughness_size uniaxial".split())
+def test_reading_runs_of_a_folder_that_is_not_there_is_refused_in_one_line(run, campaign):
+    code, said, wrong = run(f"calibration.campaigns.{campaign}", "missing", "--read")
+    assert code == 2 and not said and wrong.count("\n") == 1 and wrong.startswith("error: DIR = missing must be ")
