@@ -1,12 +1,12 @@
 """The powers of the radius that keep the strengths of a rock of cohesive bonds in coarser and finer discs.
 
-    python3 -m calibration.fitting.size_powers --rock NAME|FILE --out DIR [--factor 4] [--packings 5] [--jobs 2]
+    python3 -m calibration.fitting.size_powers --rock NAME|FILE --out DIR [--factor 2] [--packings 5] [--jobs 2]
 
 The fracture energy of such bonds is a length of the rock's own: discs of other radii than those of its file make it
 stronger or weaker. Specimens with discs `factor` times coarser and finer are crushed and pulled until
 bond_tension_power and bond_cohesion_power leave UCS and tensile strength alike in both; then other packings are tested
-at all three radii. Writes DIR/rock.json, the rock with these powers, and DIR/size_powers.md. What was interrupted goes
-on where it was when it is started again with the same words.
+at all three radii: over a large factor one power may not be enough. Writes DIR/rock.json, the rock with these powers,
+and DIR/size_powers.md. What was interrupted goes on where it was when it is started again with the same words.
 """
 import hashlib
 import json
@@ -43,7 +43,7 @@ CHECKED = 20
 """First seed of the check."""
 GROUPS = [Group("rock", (
     Parameter("rock", "", "", file, "rock, a name of the library or a file, of cohesive bonds in the plane", "yours"),
-    Parameter("factor", 4.0, "", number(1.5, 10), "how many times coarser and finer the discs are to be"))),
+    Parameter("factor", 2.0, "", number(1.5, 10), "how many times coarser and finer the discs are to be"))),
     Group("search", (Parameter("packings", 5, "", integer(2), "packings of each set of tests"),
                      Parameter("jobs", 2, "", integer(1), "tests at a time"))),
     Group("output", (Parameter("out", "", "", text, "folder of rock.json, size_powers.md and all runs"),))]
