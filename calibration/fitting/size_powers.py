@@ -127,7 +127,7 @@ def page(name, solution, found, *, factor, packings):
              f"{factor:g} times coarser and finer than those of its file ({packings} packings that the search has not "
              "seen).", ""]
     lines += generated.table(
-        ["", "radius over that of the file", "mean ± standard error, MPa", "change", "allowed"],
+        ["", "radius over that of the file", "mean ± standard error, MPa", "change", "stays"],
         [[words, f"{ratio:.3g}", f"{1e-6 * mean:.4g} ± {1e-6 * error:.2g}",
           "–" if ratio == 1.0 else f"{100 * change:+.1f} ± {100 * deviation:.1f} %", "yes" if kept else "**no**"]
          for words, ratio, mean, error, change, deviation, kept in rows])
