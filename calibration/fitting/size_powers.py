@@ -89,7 +89,7 @@ def exponents(found, factor):
     """(mean (2,), standard error (2,)) of d ln strength / d ln radius, in the order of TESTS, between discs `factor`
     times coarser and finer of the same packings. found: of SizedLaboratory.measure."""
     of = np.array([np.log(found[test, factor] / found[test, 1 / factor]) for test in TESTS]) / (2 * math.log(factor))
-    return of.mean(axis=1), of.std(axis=1, ddof=1) / math.sqrt(of.shape[1])
+    return np.array([generated.mean_and_error(of_packings) for of_packings in of]).T
 
 
 def search(measure, *, factor, start):
@@ -116,9 +116,8 @@ def changes(found, factor):
     return rows
 
 
-def page(name, solution, found, *, factor, packings):
-    """Lines of size_powers.md. found: the check."""
-    rows = changes(found, factor)
+def page(name, solution, rows, *, factor, packings):
+    """Lines of size_powers.md. rows: of `changes`."""
     met = all(row[-1] for row in rows)
     names = ", ".join(f"{power} {value:.3g}" for power, value in zip(POWERS, solution.x))
     lines = [f"# {name} in coarser and finer discs", "",
@@ -176,16 +175,16 @@ def main(words):
             laboratory = SizedLaboratory(runs=runs, data=data, folder=runs_at)
             solution = search(lambda powers: exponents(laboratory.measure(powers, ends, seeds), factor),
                               factor=factor, start=start)
-            found = laboratory.measure(solution.x, (1.0, *ends), [CHECKED + seed for seed in seeds])
+            rows = changes(laboratory.measure(solution.x, (1.0, *ends), [CHECKED + seed for seed in seeds]), factor)
     except (RunFailed, OSError) as error:
         print(f"error: {error}", file=sys.stderr)
         return 1
     (folder / "rock.json").write_text(json.dumps(with_powers(data, solution.x), indent=1) + "\n", encoding="utf-8")
     generated.record(folder / "rock.json")
     print(generated.write_page(folder / "size_powers.md",
-                               page(data["name"], solution, found, factor=factor, packings=packings)))
+                               page(data["name"], solution, rows, factor=factor, packings=packings)))
     print(f"rock: {folder / 'rock.json'}")
-    return 0 if all(row[-1] for row in changes(found, factor)) else 3
+    return 0 if all(row[-1] for row in rows) else 3
 
 
 if __name__ == "__main__":
