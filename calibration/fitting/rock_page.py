@@ -158,8 +158,8 @@ def page(found, *, micro, targets, values):
     errors = ", ".join(f"{name} {100 * error:.1f} %" for name, error in zip(micro.names, found.error))
     others = (" (`python3 -m calibration.fitting.size_powers` finds how they follow the radius.)"
               if micro.law == "cohesive" else "")
-    lines += [f"They hold at radii of {radii(values)} mm in the plane.{others} Standard errors of what varied, "
-              f"from the scatter of packings: {errors}."
+    lines += [f"They hold at radii of {radii(values)} mm in the plane.{others} Standard errors of what was "
+              f"varied, from the scatter of packings: {errors}."
               + (f" Not varied: {', '.join(micro.fixed)}, for want of a target." if micro.fixed else ""), ""]
     lines += ["## Steps", "", "Means over the packings of each stage; minutes since the start, without runs kept from "
               "an earlier one:", ""]

@@ -40,7 +40,7 @@ SEARCHES = 4
 ENOUGH = 0.5
 """Part of what is allowed that the search may miss."""
 CHECKED = 20
-"""First seed of the check."""
+"""Seeds of the check lie above this, and above those of the search."""
 GROUPS = [Group("rock", (
     Parameter("rock", "", "", file, "rock, a name of the library or a file, of cohesive bonds in the plane", "yours"),
     Parameter("factor", 2.0, "", number(1.5, 10), "how many times coarser and finer the discs are to be"))),
@@ -169,13 +169,14 @@ def main(words):
         return 2
     factor, packings = values["factor"], values["packings"]
     ends, seeds = (factor, 1 / factor), range(1, 1 + packings)
+    unseen = [max(CHECKED, packings) + seed for seed in seeds]
     start = [data["plane"]["parameters"].get(power, 0.0) for power in POWERS]
     try:
         with Runs(runs_at, at_once=values["jobs"], keep=True) as runs:
             laboratory = SizedLaboratory(runs=runs, data=data, folder=runs_at)
             solution = search(lambda powers: exponents(laboratory.measure(powers, ends, seeds), factor),
                               factor=factor, start=start)
-            rows = changes(laboratory.measure(solution.x, (1.0, *ends), [CHECKED + seed for seed in seeds]), factor)
+            rows = changes(laboratory.measure(solution.x, (1.0, *ends), unseen), factor)
     except (RunFailed, OSError) as error:
         print(f"error: {error}", file=sys.stderr)
         return 1

@@ -45,7 +45,7 @@ def run(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(SizedLaboratory, "measure", lambda self, powers, ratios, seeds: made_up(powers, ratios, seeds))
 
     def of(*words):
-        return size_powers.main([*words, "--out", str(tmp_path / "out")]), *capsys.readouterr()
+        return size_powers.main([*map(str, words), "--out", str(tmp_path / "out")]), *capsys.readouterr()
     return of
 
 
@@ -70,6 +70,18 @@ def test_strengths_that_no_powers_keep_are_said(run, monkeypatch, tmp_path):
     code, _, wrong = run("--rock", "medium_sandstone")
     page = (tmp_path / "out" / "size_powers.md").read_text(encoding="utf-8")
     assert code == 3 and not wrong and "**do not all stay**" in page and page.count("| **no** |") == 4
+
+
+@pytest.mark.parametrize("packings", [5, 25])
+def test_the_check_is_of_packings_that_the_search_has_not_seen(run, monkeypatch, packings):
+    seen = {}
+
+    def noted(self, powers, ratios, seeds):
+        seen.setdefault(len(ratios), set()).update(seeds)
+        return made_up(powers, ratios, seeds)
+    monkeypatch.setattr(SizedLaboratory, "measure", noted)
+    run("--rock", "medium_sandstone", "--packings", packings)
+    assert len(seen[2]) == len(seen[3]) == packings and not seen[2] & seen[3]
 
 
 @pytest.mark.parametrize("words, said", [
