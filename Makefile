@@ -11,7 +11,7 @@ TO_LINT := python3-flake8
 .DEFAULT_GOAL := help
 .PHONY: help setup setup-sweep setup-test run test test-kernels validate bench fidelity campaigns campaign-wear \
         campaign-uniaxial campaign-grains campaign-rocks campaign-steady campaign-worn campaign-granular \
-        campaign-slow campaign-toughness lint clean
+        campaign-slow campaign-toughness campaign-groove lint clean
 
 # $(call install,packages,modules): the missing packages, where there is apt-get; then each module must be found.
 define install
@@ -97,6 +97,9 @@ campaign-slow: setup-sweep ## cuts at 8 to 1 m/s that a source makes at 0.04 (ho
 
 campaign-toughness: setup-sweep ## toughness of four rocks over the size of the specimen (an hour; resumes)
 	$(PYTHON) -m calibration.campaigns.toughness_size $(OUT)/campaign-toughness $(WHERE)
+
+campaign-groove: setup-sweep ## cuts in space by tools of three breadths: what their sides add (two hours; resumes)
+	$(PYTHON) -m calibration.campaigns.groove $(OUT)/campaign-groove $(WHERE)
 
 lint: ## check the code with flake8
 	$(call install,$(TO_LINT),flake8)

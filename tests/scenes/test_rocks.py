@@ -24,6 +24,22 @@ def test_a_rock_in_the_plane_and_none_for_space(tmp_path):
     assert_refused(*space, "rock = m_sandstone: must be a rock with a part for the space")
 
 
+def test_a_rock_of_the_library_is_cut_in_space(tmp_path):
+    """The block of other tests, twenty times smaller; gravity would do 1e-4 of the work."""
+    lengths = "width", "height", "depth", "breadth", "tooth_height", "tooth_width", "depth_of_cut"
+    values = {**{name: BLOCK[name] / 20 for name in lengths}, "rock": "crushing_sandstone", "radius": 6e-4,
+              "scale_factor": 1, "facet": 1e-3, "tip_radius": 2e-4, "tool_kn": 1.5e7, "tool_kt": 6e6, "velocity": 8.0,
+              "lowering_velocity": 8.0, "cut_time": 3e-4, "approach": 2e-4, "gravity": 0, "snapshot_period": 1,
+              "report": "false"}
+    run = run_script(ROOT / "yade_scripts/cutting_3d_triangles.py", *arguments(values), "--out", str(tmp_path),
+                     out=tmp_path)
+    assert run.code == 0, run.stderr
+    energy, results = run.summary["balances"]["energy"], run.summary["results"]
+    assert run.summary["parameters"]["bond_crushing"] == 480e6
+    assert energy["tool_work"] > 0.05 and abs(energy["residual"]) < 0.01 * energy["tool_work"], energy
+    assert results["shear_cracks"]["value"] > 20 and energy["rock_crushing"] > 0
+
+
 def test_help_shows_it():
     run = run_script(ROOT / "yade_scripts/uniaxial.py", "--help")
     assert run.code == 0 and "--rock NAME|FILE" in run.stdout.partition("\nbonds:")[2].split("\n\n")[0]

@@ -1,0 +1,88 @@
+"""make campaign-groove: what is cut at the tool's sides, and what has come off, of runs whose answer is known."""
+import json
+
+import numpy as np
+import pytest
+
+from calibration.campaigns import groove
+
+SLICE, SIDES = 50e3, 300.0
+"""N/m and N of the made-up cuts."""
+SPACING = 1e-3
+"""m between the particles of the made-up block, each of which stands for a cube."""
+
+
+def made_up(folder, seed_factor=lambda seed: 1.0):
+    """Runs of the whole plan: forces of a slice and of the sides, a groove 2 mm wider than the tool on either side and
+    1 mm deeper than its path, between 5 mm and the end of the way."""
+    for (_, seed), (place, values) in groove.plan(groove.BREADTHS).items():
+        run = folder / place
+        (run / "snapshots").mkdir(parents=True)
+        (run / "summary.json").write_text(json.dumps({
+            "results": {}, "parameters": values, "versions": {"rockwear": "0"},
+            "balances": {"energy": {"tool_work": 10.0, "residual": -0.05}}}), encoding="utf-8")
+        force = (SIDES + SLICE * values["breadth"]) * seed_factor(seed)
+        time = np.linspace(0.0, values["cut_time"], 400)
+        way = values["velocity"] * time
+        rows = np.column_stack([time + 1e-3, np.ones(400), np.full(400, force), np.full(400, 0.5 * force),
+                                0.1 * force * way])
+        header = "time [s],stage [-],cutting_force [N],thrust_force [N],tool_friction [J]"
+        np.savetxt(run / "history.csv", rows, delimiter=",", header=header, comments="", fmt="%.9g")
+        block(run, values)
+
+
+def block(run, values):
+    """A block of particles on a square lattice, each bonded to the one below it, but for those in the groove."""
+    size = [values[name] for name in ("width", "height", "depth")]
+    counts = [round(length / SPACING) for length in size]
+    places = SPACING * (np.indices(counts).reshape(3, -1).T + 0.5)
+    number = np.arange(len(places)).reshape(counts)
+    bonds = np.stack([number[:, :-1], number[:, 1:]], axis=-1).reshape(-1, 2)
+    places[:, 2] -= 0.5 * size[2]
+    gone = (np.abs(places[:, 2]) < 0.5 * values["breadth"] + 2e-3) & (places[:, 0] > 2e-3)
+    gone &= places[:, 1] > values["height"] - values["depth_of_cut"] - 1e-3
+    np.savez(run / "model.npz", rock_radii=np.full(len(places), SPACING / 2), rock_fixed=places[:, 1] < SPACING,
+             bonds=bonds, block=size)
+    for number, status in enumerate((np.zeros(len(bonds)), gone[bonds].any(axis=1))):
+        np.savez(run / "snapshots" / f"{number:04d}.npz", time=float(number), stage=1, rock_positions=places,
+                 status=status.astype(np.int8))
+
+
+def test_force_at_the_sides_and_of_a_slice(tmp_path):
+    made_up(tmp_path)
+    a_slice, sides = groove.sides(groove.measured(tmp_path))
+    assert a_slice.value == pytest.approx(1e-3 * SLICE, rel=1e-6) and sides.value == pytest.approx(1e-3 * SIDES)
+
+
+def test_packings_scatter(tmp_path):
+    made_up(tmp_path, lambda seed: 1 + 0.1 * (seed - 2))
+    a_slice, sides = groove.sides(groove.measured(tmp_path))
+    assert a_slice.value == pytest.approx(1e-3 * SLICE, rel=1e-6)
+    assert a_slice.standard_error == pytest.approx(1e-4 * SLICE / np.sqrt(3), rel=1e-6)
+    assert sides.standard_error == pytest.approx(1e-4 * SIDES / np.sqrt(3), rel=1e-6)
+
+
+def test_section_of_the_groove_and_what_came_off_below_the_path(tmp_path):
+    """Particles off fill whole columns: the sections are exact where the breadth is so many of them."""
+    made_up(tmp_path)
+    for name, breadth in (("13", 13e-3), ("26", 26e-3)):
+        (values, *_) = [groove.of_run(groove.RunFolder(tmp_path / f"{name}-{seed}")) for seed in groove.SEEDS]
+        wide = round((breadth + 4e-3) / SPACING) * SPACING
+        assert values["section"].value == pytest.approx(wide * 6e-3 / (breadth * 5e-3), rel=1e-6)
+        assert values["overbreak"].value == pytest.approx(wide * 1e-3 / (breadth * 5e-3), rel=1e-6)
+        assert values["thrust"].value == pytest.approx(0.5) and values["missed"].value == pytest.approx(-0.005)
+        assert values["energy"].value == pytest.approx(1e-6 * (SIDES / breadth + SLICE) / 5e-3)
+
+
+def test_the_page(tmp_path):
+    made_up(tmp_path)
+    assert groove.main(tmp_path, ["--read"]) == 0
+    page = (tmp_path / "groove.md").read_text(encoding="utf-8")
+    assert "| 13 | 3 | 0.95 ± " in page and "0.3 ± " in page and "50 ± " in page
+    assert (tmp_path / "groove.png").stat().st_size > 2e4
+
+
+def test_a_breadth_alone_tells_no_sides(tmp_path):
+    made_up(tmp_path)
+    found = groove.measured(tmp_path)
+    assert np.isnan(groove.sides({"13": found["13"]})[0].value)
