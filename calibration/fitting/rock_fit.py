@@ -158,6 +158,12 @@ def verdict(observable, values):
                    off=abs(mean - observable.target), allowed=allowed)
 
 
+def check_jobs(count):
+    """Raise ParameterError for more tests at a time than this machine has any use for."""
+    most = JOBS * os.cpu_count()
+    require(count <= most, "jobs", count, f"at most {most}, {JOBS} for each processor here")
+
+
 def main(words):
     """Command line. -> exit code: 0 where every target is met; 3 where some are missed; 4 where none is, but packings
     scatter too much to tell of some; 2: options that cannot be used; 1: a run failed."""
@@ -169,8 +175,7 @@ def main(words):
         values = parameters.read(GROUPS, words)
         targets = targets_of(values)
         start = start_of(values)
-        most = JOBS * os.cpu_count()
-        require(values["jobs"] <= most, "jobs", values["jobs"], f"at most {most}, {JOBS} for each processor here")
+        check_jobs(values["jobs"])
         require(values["out"], "out", "nothing", "given: the folder of the results")
         folder = made(Path(values["out"]))
         require_dask()

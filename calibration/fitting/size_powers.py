@@ -18,7 +18,7 @@ import numpy as np
 
 from calibration import command, generated
 from calibration.campaigns.runs import RunFailed, Runs, as_they_end, require_dask
-from calibration.fitting.rock_fit import LEAST_NOISE, SIDES
+from calibration.fitting.rock_fit import LEAST_NOISE, SIDES, check_jobs
 from calibration.fitting.rock_tests import COMMON, DROP
 from calibration.fitting.surrogate import Problem, Surrogate, solve
 from rockwear.kernels.checks import ParameterError, require
@@ -160,6 +160,7 @@ def main(words):
     try:
         values = parameters.read(GROUPS, words)
         data = rock_of(values)
+        check_jobs(values["jobs"])
         require(values["out"], "out", "nothing", "given: the folder of the results")
         require_dask()
         folder = command.made(Path(values["out"]))
