@@ -1,5 +1,6 @@
 """One form of error for every parameter: name, value, unit and the rule it breaks, in one line."""
 import math
+from contextlib import contextmanager
 
 
 class ParameterError(ValueError):
@@ -46,3 +47,12 @@ def within(name, value, low, high, unit=""):
     number = finite(name, value, unit)
     require(low <= number <= high, name, number, f"between {low:g} and {high:g}", unit)
     return number
+
+
+@contextmanager
+def known_as(**names):
+    """A context in which ParameterErrors of `word` are of names[word]: a kernel's words under those of the user."""
+    try:
+        yield
+    except ParameterError as error:
+        raise ParameterError(names.get(error.name, error.name), error.value, error.rule, error.unit) from None

@@ -5,7 +5,7 @@ from scipy.spatial import cKDTree
 from rockwear.kernels import packing
 from rockwear.kernels import polygon as outline
 from rockwear.kernels.voronoi import cells
-from rockwear.kernels.checks import ParameterError, positive, require
+from rockwear.kernels.checks import ParameterError, known_as, positive, require
 from rockwear.kernels.conduction import calibrated_conductance, paths
 from rockwear.kernels.erosion import Erosion
 from rockwear.model.cache import cached
@@ -103,7 +103,8 @@ class Tool(ParticleTool):
         positive("tool_radius_min", radius_min, "m")
         vertices, area = np.asarray(vertices, float), outline.area(vertices)
         self._packing = dict(radius_min=radius_min, radius_max=radius_max, seed=seed)
-        filled = fill(vertices, **self._packing)
+        with known_as(radius_min="tool_radius_min", radius_max="tool_radius_max"):
+            filled = fill(vertices, **self._packing)
         positions, radii = filled["positions"], filled["radii"]
         self.cells = cells(positions, polygon=vertices)
         fixed = positions[:, 1] > vertices[:, 1].max() - 1.5 * radii
@@ -133,7 +134,8 @@ class LayeredTool(ParticleTool):
         vertices = np.asarray(vertices, float)
         layers = int(positive("breadth", breadth, "m") / (2 * radius) + 1e-9)
         require(layers > 1, "breadth", breadth, f"at least two particles, {4 * radius:g}", "m")
-        filled = fill(vertices, radius_min=radius, radius_max=radius, seed=seed)
+        with known_as(radius_min="tool_radius", radius_max="tool_radius"):
+            filled = fill(vertices, radius_min=radius, radius_max=radius, seed=seed)
         layer = filled["positions"]
         self.breadth, self.layers, self.section = 2 * radius * layers, layers, cells(layer, polygon=vertices)
         number, one = np.arange(layers * len(layer)), len(layer)

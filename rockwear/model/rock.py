@@ -10,7 +10,7 @@ from rockwear.kernels import packing
 from rockwear.kernels.bond_laws import Cohesive, ElasticBrittle
 from rockwear.kernels.bond_laws.cohesive import UNBREAKABLE
 from rockwear.kernels import polygon as outline
-from rockwear.kernels.checks import ParameterError, not_negative, positive, require, within
+from rockwear.kernels.checks import ParameterError, known_as, not_negative, positive, require, within
 from rockwear.kernels.conduction import calibrated_conductance, paths
 from rockwear.kernels.curve_order import curve_order
 from rockwear.kernels.grains import grains
@@ -408,13 +408,9 @@ class Block(RockAssembly):
                 f"at most radius = {radius:g}: bonds join neighbours", "m")
 
         def make():
-            try:
+            with known_as(radius_min="radius", radius_max="radius"):
                 made = packing.pack(box=box, radius_min=radius, radius_max=radius, porosity=porosity, seed=seed,
                                     jammed=bonded)
-            except ParameterError as error:
-                # The kernel's word for it is not that of the scene.
-                name = "radius" if error.name.startswith("radius") else error.name
-                raise ParameterError(name, error.value, error.rule, error.unit) from None
             return {"positions": made.positions, "radii": made.radii}
 
         stored = ordered(cached(make, box=list(box), radius=radius, porosity=porosity, seed=seed, jammed=bonded))

@@ -124,9 +124,15 @@ def check_radii(v):
 
 
 def thermal_fill(v, vertices):
-    """Particles that stand for the heat of a tool of facets with this outline (k, 2) m."""
-    return Tool(vertices=vertices, radius_min=0.87 * v.thermal_radius, radius_max=1.13 * v.thermal_radius, seed=v.seed,
-                removal="none", density=v.tool_density)
+    """Particles that stand for the heat of a tool of facets with this outline (k, 2) m. Raises ParameterError."""
+    try:
+        return Tool(vertices=vertices, radius_min=0.87 * v.thermal_radius, radius_max=1.13 * v.thermal_radius,
+                    seed=v.seed, removal="none", density=v.tool_density)
+    except ParameterError as error:
+        if not error.name.startswith("tool_radius"):
+            raise
+        raise ParameterError("thermal_radius", v.thermal_radius, "so that of the particles which fill the tool "
+                             f"{error.value:g} is {error.rule}", "m") from None
 
 
 def plane_tool(v, vertices):

@@ -206,3 +206,12 @@ def test_particles_that_grow_too_large_are_the_grading_s_fault():
     with pytest.raises(ParameterError, match="^grading_factor = 3: must be between 1 and 2.222"):
         rock.Specimen(width=0.03, height=0.02, radius_min=1e-3, radius_max=1.5e-3, porosity=0.12, seed=1,
                       bonding_gap=1e-4, density=2500.0, grading_factor=3.0, fine_depth=0.008)
+
+
+@pytest.mark.parametrize("make, name", [
+    (lambda **common: tool.Tool(radius_min=4e-3, radius_max=5e-3, **common), "tool_radius_max = 0.005 m"),
+    (lambda **common: tool.LayeredTool(radius=4e-3, breadth=0.04, **common), "tool_radius = 0.004 m")])
+def test_too_large_particles_of_a_tool_have_the_name_that_scenes_give_them(make, name):
+    outline = np.array([(0, 0), (0.02, 0), (0.02, 0.02), (0, 0.02)])
+    with pytest.raises(ParameterError, match=f"^{name}: must be at most 0.003"):
+        make(vertices=outline, seed=1, removal="none", density=7830.0)

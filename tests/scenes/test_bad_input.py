@@ -42,6 +42,8 @@ BROKEN_RULES = [
     ({"tip_radius": 0.05}, "tip_radius = 0.05 m: must be"),
     ({"tool_radius_min": 0.6e-3}, "tool_radius_max = 0.00052 m: must be at least tool_radius_min"),
     ({"tool_radius_max": 2e-3}, "tool_radius_max = 0.002 m: must be at most the rock's radius_min"),
+    ({"tool": "segments", "thermal_radius": 0.02}, "thermal_radius = 0.02 m: must be so that of the particles which "
+     "fill the tool 0.0226 is at most "),
     ({"outline": "nowhere.csv", **WITHOUT_TOOTH}, "outline = nowhere.csv: must be a readable CSV file"),
     ({"hardness_table": "butter"}, "hardness_table = butter: must be one of MET71, MET91"),
     ({"removal": "magic"}, "removal = magic: must be one of volume, depth"),
