@@ -7,6 +7,7 @@ from scipy.sparse.csgraph import connected_components
 from yade import O
 
 from calibration.laboratory.loaded_specimen import SpecimenOutput, SpecimenTest, groups
+from rockwear.engines import access
 from rockwear.engines.bonds import INTACT
 from rockwear.kernels import brazilian
 from rockwear.kernels.checks import require
@@ -101,7 +102,7 @@ class BrazilianTest(SpecimenTest):
         of the branch that lies in it."""
         across = along = 0.0
         for n, part in self.central_bonds:
-            interaction = O.interactions[self.rock.pairs[n].tolist()] if self.bonds.status[n] == INTACT else None
+            interaction = access.contact_of(*self.rock.pairs[n].tolist()) if self.bonds.status[n] == INTACT else None
             # A bond that has just broken in C++ counts as intact up to the next look at it.
             if not (interaction and interaction.isReal):
                 continue

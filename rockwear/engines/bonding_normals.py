@@ -3,7 +3,9 @@ import math
 import numpy as np
 
 from scipy.spatial.transform import Rotation
-from yade import O, Subdomain, Vector3
+from yade import O, Vector3
+
+from rockwear.engines.access import states
 
 FULL_ROLL = 1.0
 """Angle (rad) by which bonded particles may roll on each other until their normals at bonding are set anew."""
@@ -60,7 +62,7 @@ class BondingNormals:
         ends: (m, 2) ids of the bodies of all bonds; bodies: ids of all that exist.
         """
         orientations = np.tile([0.0, 0.0, 0.0, 1.0], (ends.max() + 1, 1))
-        orientations[bodies] = np.reshape(Subdomain().getStateValuesFromIds(bodies), (-1, 13))[:, 9:]
+        orientations[bodies] = states(bodies)[:, 9:]
         first, second = (Rotation.from_quat(orientations[ends[numbers, side]]).apply(self.normals[numbers, side])
                          for side in (0, 1))
         return numbers[np.sum(first * second, axis=1) < math.cos(FULL_ROLL)]

@@ -4,7 +4,7 @@ import numpy as np
 
 from yade import Ig2_Sphere_Sphere_ScGeom, Law2_ScGeom_JCFpmPhys_JointedCohesiveFrictionalPM, O
 
-from rockwear.engines.access import body_erased, geometry_functor, law_functor
+from rockwear.engines.access import body_erased, contact_of, geometry_functor, law_functor
 from rockwear.engines.bond_log import BROKEN, INTACT, SEPARATED, BondLog, Crack
 from rockwear.engines.bonding_normals import BondingNormals
 from rockwear.engines.softening import SofteningBond, from_rows, set_elastic_domain, to_rows
@@ -73,7 +73,7 @@ class Bonds(BondLog):
 
     def bond(self, numbers):
         for n in numbers.tolist():
-            interaction, law = O.interactions[tuple(self.pairs[n].tolist())], self.laws[n]
+            interaction, law = contact_of(*self.pairs[n].tolist()), self.laws[n]
             phys = interaction.phys
             # The label by which the C++ law tells what it broke.
             phys.crossSection = n + 1
@@ -96,7 +96,7 @@ class Bonds(BondLog):
         self.elastic, self.broken, self.ends = {}, {}, self.pairs.copy()
         for n, (i, j) in enumerate(self.pairs.tolist()):
             if self.status[n] != SEPARATED:
-                interaction = O.interactions[i, j]
+                interaction = contact_of(i, j)
                 self.ends[n] = interaction.id1, interaction.id2
                 for group in (self.softening_bonds, self.returned):
                     if n in group:
@@ -109,7 +109,7 @@ class Bonds(BondLog):
 
     def _take_up(self, numbers):
         for n in numbers.tolist():
-            interaction = O.interactions[tuple(self.pairs[n].tolist())]
+            interaction = contact_of(*self.pairs[n].tolist())
             self.ends[n] = interaction.id1, interaction.id2
             if n not in self.softening_bonds:
                 self.elastic[n] = interaction, interaction.phys

@@ -7,7 +7,7 @@ import numpy as np
 from yade import CpmPhys, Ig2_Sphere_Sphere_ScGeom, O, ScGeom
 
 from rockwear.engines import crushing
-from rockwear.engines.access import geometry_functor
+from rockwear.engines.access import contact_of, geometry_functor
 from rockwear.engines.bond_log import BROKEN, INTACT, SEPARATED, BondLog, Crack
 from rockwear.engines.memory import MARKS, MEMORY, TRIED, Places, check, offset, place, require_memory
 from rockwear.kernels.bond_laws.cohesive import UNBREAKABLE, softening_energy
@@ -225,7 +225,7 @@ class CpmBonds(BondLog):
     def bond(self, numbers):
         self.crushing.begin()
         for n in numbers.tolist():
-            phys, law = O.interactions[tuple(self.pairs[n].tolist())].phys, self.laws[n]
+            phys, law = contact_of(*self.pairs[n].tolist()).phys, self.laws[n]
             length = phys.refLength = self.crushing.reference_length(n, phys.refLength)
             phys.kn, phys.ks, phys.crossSection = law.kn, law.kt, 1.0
             phys.E, phys.G, phys.tanFrictionAngle = law.kn * length, law.kt * length, law.mu
@@ -263,7 +263,7 @@ class CpmBonds(BondLog):
         _forget(self.there, self.slipping, self.loose)
         found = []
         for n in numbers.tolist():
-            interaction = O.interactions[tuple(self.pairs[n].tolist())]
+            interaction = contact_of(*self.pairs[n].tolist())
             found.append(_Contact(interaction, interaction.geom, interaction.phys))
             self.lengths[n] = found[-1].phys.refLength
         self.contacts.update(zip(numbers.tolist(), found))

@@ -5,7 +5,8 @@ import numpy as np
 
 from yade import CpmPhys, InsertionSortCollider, JCFpmPhys, O
 
-from rockwear.engines.access import SLIDING, body_erased, contact_energy, yade_engine, yade_friction_law
+from rockwear.engines.access import (
+    SLIDING, body_erased, contact_energy, contact_of, yade_engine, yade_friction_law)
 from rockwear.engines.base import FORCES, Engine
 from rockwear.engines.bond_log import SEPARATED
 from rockwear.engines.memory import (
@@ -48,7 +49,7 @@ class RockContacts(Engine):
         for k, interaction in enumerate(known):
             # YADE would end where it is asked for contacts of an erased body.
             if interaction is None and all(O.bodies[body] for body in pairs[k]):
-                known[k] = O.interactions[pairs[k]]
+                known[k] = contact_of(*pairs[k])
         self.held = {where: interaction for where, interaction in zip(places, known) if interaction is not None}
         self._list()
 
@@ -81,7 +82,7 @@ class RockContacts(Engine):
         for n in self.bonds.parted:
             pair = tuple(self.bonds.pairs[n].tolist())
             if self.bonds.status[n] == SEPARATED and all(O.bodies[i] for i in pair) and O.interactions.has(*pair):
-                interaction = O.interactions[pair]
+                interaction = contact_of(*pair)
                 self.held[place(interaction)] = interaction
         self.bonds.parted.clear()
         self._list()

@@ -1,8 +1,9 @@
 """Rotation of the shear springs of bonds that rotate fast."""
 import numpy as np
-from yade import O, Subdomain, Vector3
+from yade import O, Vector3
 
 from rockwear.kernels.shear_rotation import shear_to_start_from, turning_rates
+from rockwear.engines.access import states
 from rockwear.engines.base import START, Engine
 from rockwear.engines.bond_log import INTACT
 
@@ -52,9 +53,9 @@ class ShearRotation(Engine):
     def _motion(self, ends):
         """Of the contacts of bodies `ends` (2, n): line (n, 3) m, velocity (n, 3) m/s, spins (2, n, 3) rad/s."""
         bodies, places = np.unique(ends, return_inverse=True)
-        states = np.reshape(Subdomain().getStateValuesFromIds(bodies.tolist()), (-1, 13))[places.reshape(ends.shape)]
-        gap = states[1] - states[0]
-        return gap[:, :3], gap[:, 3:6], states[:, :, 6:9]
+        found = states(bodies.tolist())[places.reshape(ends.shape)]
+        gap = found[1] - found[0]
+        return gap[:, :3], gap[:, 3:6], found[:, :, 6:9]
 
     def state(self):
         return {"fast": self.fast.copy()}

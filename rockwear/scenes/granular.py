@@ -7,8 +7,9 @@ import numpy as np
 from yade import (
     Bo1_Facet_Aabb, Bo1_Sphere_Aabb, ForceResetter, FrictMat, Ig2_Facet_Sphere_ScGeom, Ig2_Sphere_Sphere_ScGeom,
     InsertionSortCollider, InteractionLoop, Ip2_FrictMat_FrictMat_MindlinPhys, Law2_ScGeom_MindlinPhys_Mindlin,
-    MatchMaker, NewtonIntegrator, O, Subdomain, Vector3, utils)
+    MatchMaker, NewtonIntegrator, O, Vector3, utils)
 
+from rockwear.engines import access
 from rockwear.engines.energy_guard import EnergyGuard
 from rockwear.engines.grain_contacts import GrainContacts
 from rockwear.engines.recorder import Recorder
@@ -174,7 +175,7 @@ class Granular(Scene):
         """((m, 3) m of the grains that are left, (m,) their places among all)."""
         left = self.left()
         ids = [self.ids[k] for k in left.tolist()]
-        return np.fromiter(Subdomain().getStateValuesFromIds(ids), float).reshape(len(ids), 13)[:, :3], left
+        return access.states(ids)[:, :3], left
 
     def gravity_work(self):
         """J done by gravity, and by the inertial forces of a container that vibrates."""

@@ -113,7 +113,7 @@ class Scene(ABC):
         fresh = InsertionSortCollider(boundDispatcher=old.boundDispatcher, verletDist=old.verletDist,
                                       avoidSelfInteractionMask=old.avoidSelfInteractionMask, doSort=True,
                                       numAction=old.numAction)
-        O.engines = [fresh if isinstance(engine, InsertionSortCollider) else engine for engine in O.engines]
+        access.put_engines([fresh if isinstance(engine, InsertionSortCollider) else engine for engine in O.engines])
         access.collide_next_step()
 
     def end_stage(self, folder):

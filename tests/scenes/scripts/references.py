@@ -1,0 +1,72 @@
+"""What YADE keeps of sequences that it is given; writes {check: what it found} to the file named last.
+
+    yade -n -x references.py FILE.json
+"""
+import json
+import os
+import sys
+import weakref
+
+from yade import (
+    Bo1_Sphere_Aabb, ForceResetter, FrictMat, Ig2_Sphere_Sphere_ScGeom, InsertionSortCollider, InteractionLoop,
+    Ip2_FrictMat_FrictMat_FrictPhys, Law2_ScGeom_FrictPhys_CundallStrack, NewtonIntegrator, O, utils)
+
+from rockwear.engines import access
+
+COUNT, FIRST, CALLS = 600, 300, 200
+
+
+def collider():
+    return InsertionSortCollider([Bo1_Sphere_Aabb()])
+
+
+def row_of_spheres():
+    """Each touches the next."""
+    O.reset()
+    O.bodies.append([utils.sphere((0.99 * k, 0, 0), 0.5, material=FrictMat(young=1e5)) for k in range(COUNT)])
+    access.put_engines([ForceResetter(), collider(), InteractionLoop(
+        [Ig2_Sphere_Sphere_ScGeom()], [Ip2_FrictMat_FrictMat_FrictPhys()], [Law2_ScGeom_FrictPhys_CundallStrack()]),
+        NewtonIntegrator()])
+    O.dt = 1e-9
+    O.step()
+
+
+def replaced():
+    """{"freed": how many of CALLS colliders that others replaced are gone, "loop": what the loop then holds, "contacts":
+    how many contacts it finds}."""
+    gone = []
+    for _ in range(CALLS):
+        old = access.yade_engine(InsertionSortCollider)
+        gone.append(weakref.ref(old))
+        access.put_engines([collider() if engine is old else engine for engine in O.engines])
+        del old
+        O.step()
+    return {"freed": sum(one() is None for one in gone), "loop": [type(engine).__name__ for engine in O.engines],
+            "contacts": O.interactions.countReal()}
+
+
+def blocks(call):
+    """Blocks of memory that Python has more after CALLS calls."""
+    call()
+    before = sys.getallocatedblocks()
+    for _ in range(CALLS):
+        call()
+    return sys.getallocatedblocks() - before
+
+
+def again():
+    """A number that is no object of before."""
+    return int(str(FIRST))
+
+
+row_of_spheres()
+checks = {
+    "replaced": replaced(),
+    "contact": blocks(lambda: access.contact_of(again(), again() + 1)),
+    "states": blocks(lambda: access.states(range(COUNT))),
+    "bodies": [access.contact_of(FIRST, FIRST + 1).id1, access.contact_of(FIRST, FIRST + 1).id2],
+    "places": access.states([FIRST, 5])[:, 0].tolist(),
+}
+with open(sys.argv[-1], "w", encoding="utf-8") as file:
+    json.dump(checks, file)
+os._exit(0)
