@@ -232,6 +232,14 @@ def test_what_does_not_come_to_rest_names_the_porosity(monkeypatch):
         pack(**GRAINS, box=(0.03, 0.03), porosity=0.12, seed=1)
 
 
+def test_particles_nearly_at_rest_will_do_when_the_iterations_are_over(monkeypatch):
+    """This one comes to rest in 200 to 300 iterations."""
+    arguments = {**GRAINS, "box": (0.03, 0.03), "porosity": 0.12, "seed": 1}
+    rest = pack(**arguments)
+    monkeypatch.setattr(kernel, "MAX_ITERATIONS", 200)
+    assert rest.imbalance < pack(**arguments).imbalance < kernel.AT_REST
+
+
 def test_tile_errors(periodic_tile, specimen):
     for packing, repeats, name in ((specimen, (2, 2), "packing"), (periodic_tile, (2, 0), "repeats"),
                                    (periodic_tile, 2, "repeats"), (periodic_tile, (1.5, 2), "repeats")):
