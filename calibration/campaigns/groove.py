@@ -1,12 +1,12 @@
 """A groove in space: what a tool's sides add to the cut of a slice.
 
-    python3 -m calibration.campaigns.groove DIR [BREADTH ...] [--read] [--jobs N | --scheduler ADDRESS]
+    python3 -m calibration.campaigns.groove DIR [RADIUS ...] [--read] [--jobs N | --scheduler ADDRESS]
 
-Tools of the breadths BREADTHS (mm) cut `crushing_sandstone` in space, the same depth in the same packings of rock. The
-mean force grows as that of a slice times the breadth, and what is left at no breadth is cut at the tool's two sides. N
-runs at a time (2), or as many as a dask scheduler's workers take; a folder a run; finished runs are not repeated, so
-that an interrupted campaign resumes. --read starts no run and evaluates those that exist. Writes into DIR groove.md,
-groove.png and provenance.json.
+Tools of the breadths BREADTHS cut `crushing_sandstone` in space, of spheres of the radii RADII (mm), to the same depth.
+The mean force grows as that of a slice times the breadth, and what is left at no breadth is cut at the tool's two
+sides. The rock is crushed in the laboratory, too. N runs at a time (2), or as many as a dask scheduler's workers take;
+a folder a run; finished runs are not repeated, so that an interrupted campaign resumes. --read starts no run and
+evaluates those that exist. Writes into DIR groove.md, groove.png and provenance.json.
 """
 import math
 import sys
@@ -22,32 +22,46 @@ from rockwear.kernels.fragments import pieces
 from rockwear.report import palette, plots
 from rockwear.report.folder import RunFolder
 
-SCRIPT = "yade_scripts/cutting_3d_triangles.py"
+SCRIPT, COMPRESSION = "yade_scripts/cutting_3d_triangles.py", "yade_scripts/uniaxial_3d.py"
 BREADTHS = {"6.5": 6.5e-3, "13": 13e-3, "26": 26e-3}
 """{mm: m}. A laboratory's chisel is 13 mm wide."""
+RADII = {"0.6": 6e-4, "0.9": 9e-4}
+"""{mm: m}: four spheres in the depth of cut, and three."""
 SEEDS = 1, 2, 3
 BESIDE = 0.01
 """m of rock at either side of the tool, two depths of cut, up to spheres that are fixed."""
-DRAWN = "13"
+DRAWN = "0.6", "13"
 BEGIN = 1
 """Depths of cut that do not count: the tool begins at a free face."""
-CUT = dict(rock="crushing_sandstone", scale_factor=1.0, radius=6e-4, width=0.045, height=0.015, gravity=0.0,
+ROCK = "crushing_sandstone"
+CUT = dict(rock=ROCK, scale_factor=1.0, width=0.045, height=0.015, gravity=0.0,
            tooth_height=0.012, tooth_width=0.008, rake=-5.0, clearance=5.0, tip_radius=5e-4, facet=2e-3,
            tool_kn=1.5e7, tool_kt=6e6, tool_mu=0.3, contact_damping=0.2, velocity=8.0, lowering_velocity=8.0,
            depth_of_cut=5e-3, start=0.0, approach=1e-3, cut_time=3.75e-3, background_damping=500.0,
            snapshot_period=5e-4, record_period=5e-6, report="false")
-"""Four spheres in the depth of cut, six depths of way; else as in campaigns.steady_cut."""
+"""Six depths of way; else as in campaigns.steady_cut."""
+BOX, SPEED = dict(width=0.02, height=0.01, depth=0.01), 0.1
+"""Of the laboratory for the first of RADII, m, loaded along its length; m/s of each platen."""
 QUANTITIES = {"mean force, kN": "force", "over depth and breadth, MJ/m³": "energy", "peak / mean": "peaks",
               "thrust / cutting": "thrust", "friction, kN": "friction", "groove over tool": "section",
               "overbreak / depth": "overbreak"}
 """{heading: quantity of of_run}."""
 
 
-def plan(breadths):
-    """{(breadth, seed): (folder, parameters)}, one packing of all breadths first."""
-    return {(name, seed): (f"{name}-{seed}", dict(CUT, breadth=breadth, seed=seed,
-                                                  depth=float(f"{breadth + 2 * BESIDE:.6g}")))
-            for seed in SEEDS for name, breadth in BREADTHS.items() if name in breadths}
+def plan(radii):
+    """{(radius, breadth, seed): (folder, script, parameters)}, one packing of all first; breadth "": the laboratory."""
+    found = {}
+    for seed in SEEDS:
+        for name in radii:
+            size, rock = RADII[name] / next(iter(RADII.values())), dict(rock=ROCK, radius=RADII[name], seed=seed)
+            box = {side: float(f"{size * length:.6g}") for side, length in BOX.items()}
+            found[name, "", seed] = (f"lab/{name}-{seed}", COMPRESSION,
+                                     dict(rock, **box, test="compression", speed=SPEED, report="false"))
+            for wide, breadth in BREADTHS.items():
+                depth = float(f"{breadth + 2 * BESIDE:.6g}")
+                found[name, wide, seed] = (f"cut/{name}-{wide}-{seed}", SCRIPT,
+                                           dict(CUT, **rock, breadth=breadth, depth=depth))
+    return found
 
 
 def of_run(run):
@@ -91,12 +105,17 @@ def off(run):
 
 
 def measured(folder):
-    """{breadth: {seed: {quantity: Measured}}} of the runs that exist."""
-    found = {}
-    for (name, seed), (place, _) in plan(BREADTHS).items():
-        if (folder / place / "summary.json").exists():
-            found.setdefault(name, {})[seed] = of_run(RunFolder(folder / place))
-    return found
+    """({radius: {breadth: {seed: {quantity: Measured}}}}, {radius: [UCS, Pa]}) of the runs that exist."""
+    cuts, ucs = {}, {}
+    for (radius, breadth, seed), (place, _, _) in plan(RADII).items():
+        if not (folder / place / "summary.json").exists():
+            continue
+        run = RunFolder(folder / place)
+        if breadth:
+            cuts.setdefault(radius, {}).setdefault(breadth, {})[seed] = of_run(run)
+        else:
+            ucs.setdefault(radius, []).append(run.result("peak_stress"))
+    return cuts, ucs
 
 
 def sides(found):
@@ -111,25 +130,28 @@ def sides(found):
 
 
 def rows(found):
-    """Rows of the table, a breadth each."""
+    """Rows of the table of a radius, a breadth each."""
     for name, of in found.items():
         cells = (shown(over_packings([one[quantity] for one in of.values()])) for quantity in QUANTITIES.values())
         yield [name, len(of), *cells, f"{100 * max(abs(one['missed'].value) for one in of.values()):.2g} %"]
 
 
-def figure(found, line, run):
+def figure(cuts, run):
     """The mean force over the breadth, and a section across the groove of a run (None: without)."""
     drawn, panels = plots.canvas(11, 4, 1, 2 if run else 1)
-    for name, of in found.items():
-        panels[0].plot([1e3 * BREADTHS[name]] * len(of), [one["force"].value for one in of.values()], "o",
-                       color=palette.POINTS)
-    if math.isfinite(line[0].value):
-        breadth = np.array([0.0, 1.05 * max(BREADTHS.values())])
-        panels[0].plot(1e3 * breadth, line[0].value * breadth + line[1].value, color=palette.CUTTING,
-                       label=f"{shown(line[1])} kN at the sides, and a slice of {shown(line[0])} kN/m")
-        panels[0].plot(1e3 * breadth, line[0].value * breadth, "--", color=palette.GUIDE, label="the slice alone")
-        panels[0].legend()
-    panels[0].set(xlabel="breadth of the tool / mm", ylabel="mean cutting force / kN", xlim=(0, None), ylim=(0, None))
+    axes = panels[0]
+    for (radius, found), colour in zip(cuts.items(), palette.OTHER_LINES):
+        for name, of in found.items():
+            axes.plot([1e3 * BREADTHS[name]] * len(of), [one["force"].value for one in of.values()], "o", color=colour)
+        a_slice, edges = sides(found)
+        if math.isfinite(a_slice.value):
+            breadth = np.array([0.0, 1.05 * max(BREADTHS.values())])
+            axes.plot(1e3 * breadth, a_slice.value * breadth + edges.value, color=colour,
+                      label=f"spheres of {radius} mm: {edges.value:.2g} kN, and {a_slice.value:.2g} kN/m")
+            axes.plot(1e3 * breadth, a_slice.value * breadth, "--", color=colour)
+    axes.plot([], [], "--", color=palette.GUIDE, label="without the sides")
+    axes.legend()
+    axes.set(xlabel="breadth of the tool / mm", ylabel="mean cutting force / kN", xlim=(0, None), ylim=(0, None))
     if run:
         section(panels[1], run)
     return drawn
@@ -151,20 +173,25 @@ def section(axes, run):
 
 
 def write(folder):
-    """Table and figure of the runs that exist. -> the table, in Markdown."""
-    found = measured(folder)
-    line = sides(found)
+    """Tables and figure of the runs that exist. -> the tables, in Markdown."""
+    cuts, ucs = measured(folder)
     lines = ["Mean ± standard error: of the packings where there are three, else of the cuts' own records, from "
              f"{BEGIN} depth of cut on. Groove over tool: section of the rock that came off over depth times breadth. "
              "Energy missed: residual of the balance over the tool's work, of the worst packing.", ""]
-    lines += generated.table(["breadth, mm", "packings", *QUANTITIES, "energy missed"], rows(found))
-    if math.isfinite(line[0].value):
-        lines += [f"The mean force is {shown(line[1])} kN at the sides and {shown(line[0])} kN per metre of breadth "
-                  "(mean of the lines of each packing)."]
-    if found:
-        drawn = next((RunFolder(folder / f"{DRAWN}-{seed}") for seed in found.get(DRAWN, {})), None)
+    for radius, found in cuts.items():
+        lines += [f"## Spheres of {radius} mm", ""]
+        if radius in ucs:
+            lines += [f"UCS {generated.mean_cell(1e-6 * np.array(ucs[radius]))} MPa ({len(ucs[radius])} packings).", ""]
+        lines += generated.table(["breadth, mm", "packings", *QUANTITIES, "energy missed"], rows(found))
+        a_slice, edges = sides(found)
+        if math.isfinite(a_slice.value):
+            lines += [f"The mean force is {shown(edges)} kN at the sides and {shown(a_slice)} kN per metre of breadth "
+                      "(mean of the lines of each packing that has all breadths).", ""]
+    if cuts:
+        drawn = next((RunFolder(folder / f"cut/{'-'.join(DRAWN)}-{seed}")
+                      for seed in cuts.get(DRAWN[0], {}).get(DRAWN[1], {})), None)
         with matplotlib.rc_context(plots.STYLE):
-            figure(found, line, drawn).savefig(folder / "groove.png")
+            figure(cuts, drawn).savefig(folder / "groove.png")
         generated.record(folder / "groove.png")
     return generated.write_page(folder / "groove.md", lines)
 
@@ -174,13 +201,14 @@ def main(folder, words, **where):
     failed = 0
     if "--read" not in words:
         with Runs(folder, keep=True, **where) as runs:
-            jobs = {key: runs.start(place, SCRIPT, **values)
-                    for key, (place, values) in plan(words or BREADTHS).items()}
-            failed = wait_for(jobs, lambda key, run: "{} mm, packing {}".format(*key))
+            jobs = {key: runs.start(place, script, **values)
+                    for key, (place, script, values) in plan(words or RADII).items()}
+            failed = wait_for(jobs, lambda key, run: "spheres of {} mm, breadth {} mm, packing {}".format(*key)
+                              if key[1] else "spheres of {0} mm, compression, packing {2}".format(*key))
     print(write(folder))
     return failed
 
 
 if __name__ == "__main__":
-    place, words, where = command_line(__spec__.name, BREADTHS)
+    place, words, where = command_line(__spec__.name, RADII)
     sys.exit(main(place, words, **where))

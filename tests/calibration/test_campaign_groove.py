@@ -15,12 +15,15 @@ SPACING = 1e-3
 def made_up(folder, seed_factor=lambda seed: 1.0):
     """Runs of the whole plan: forces of a slice and of the sides, a groove 2 mm wider than the tool on either side and
     1 mm deeper than its path, between 5 mm and the end of the way."""
-    for (_, seed), (place, values) in groove.plan(groove.BREADTHS).items():
+    for (_, breadth, seed), (place, _, values) in groove.plan(["0.9"]).items():
         run = folder / place
         (run / "snapshots").mkdir(parents=True)
         (run / "summary.json").write_text(json.dumps({
-            "results": {}, "parameters": values, "versions": {"rockwear": "0"},
+            "results": {"peak_stress": {"value": 5e7 + 1e6 * seed}},
+            "parameters": values, "versions": {"rockwear": "0"},
             "balances": {"energy": {"tool_work": 10.0, "residual": -0.05}}}), encoding="utf-8")
+        if not breadth:
+            continue
         force = (SIDES + SLICE * values["breadth"]) * seed_factor(seed)
         time = np.linspace(0.0, values["cut_time"], 400)
         way = values["velocity"] * time
@@ -50,13 +53,13 @@ def block(run, values):
 
 def test_force_at_the_sides_and_of_a_slice(tmp_path):
     made_up(tmp_path)
-    a_slice, sides = groove.sides(groove.measured(tmp_path))
+    a_slice, sides = groove.sides(groove.measured(tmp_path)[0]["0.9"])
     assert a_slice.value == pytest.approx(1e-3 * SLICE, rel=1e-6) and sides.value == pytest.approx(1e-3 * SIDES)
 
 
 def test_packings_scatter(tmp_path):
     made_up(tmp_path, lambda seed: 1 + 0.1 * (seed - 2))
-    a_slice, sides = groove.sides(groove.measured(tmp_path))
+    a_slice, sides = groove.sides(groove.measured(tmp_path)[0]["0.9"])
     assert a_slice.value == pytest.approx(1e-3 * SLICE, rel=1e-6)
     assert a_slice.standard_error == pytest.approx(1e-4 * SLICE / np.sqrt(3), rel=1e-6)
     assert sides.standard_error == pytest.approx(1e-4 * SIDES / np.sqrt(3), rel=1e-6)
@@ -66,7 +69,7 @@ def test_section_of_the_groove_and_what_came_off_below_the_path(tmp_path):
     """Particles off fill whole columns: the sections are exact where the breadth is so many of them."""
     made_up(tmp_path)
     for name, breadth in (("13", 13e-3), ("26", 26e-3)):
-        (values, *_) = [groove.of_run(groove.RunFolder(tmp_path / f"{name}-{seed}")) for seed in groove.SEEDS]
+        (values, *_) = [groove.of_run(groove.RunFolder(tmp_path / f"cut/0.9-{name}-{seed}")) for seed in groove.SEEDS]
         wide = round((breadth + 4e-3) / SPACING) * SPACING
         assert values["section"].value == pytest.approx(wide * 6e-3 / (breadth * 5e-3), rel=1e-6)
         assert values["overbreak"].value == pytest.approx(wide * 1e-3 / (breadth * 5e-3), rel=1e-6)
@@ -74,15 +77,16 @@ def test_section_of_the_groove_and_what_came_off_below_the_path(tmp_path):
         assert values["energy"].value == pytest.approx(1e-6 * (SIDES / breadth + SLICE) / 5e-3)
 
 
-def test_the_page(tmp_path):
+def test_the_page(tmp_path, monkeypatch):
+    monkeypatch.setattr(groove, "DRAWN", ("0.9", "13"))
     made_up(tmp_path)
     assert groove.main(tmp_path, ["--read"]) == 0
     page = (tmp_path / "groove.md").read_text(encoding="utf-8")
-    assert "| 13 | 3 | 0.95 ± " in page and "0.3 ± " in page and "50 ± " in page
-    assert (tmp_path / "groove.png").stat().st_size > 2e4
+    assert "| 13 | 3 | 0.95 ± " in page and "is 0.3 ± " in page and "50 ± " in page and "UCS 52 ± 0.58 MPa" in page
+    assert (tmp_path / "groove.png").stat().st_size > 4e4
 
 
 def test_a_breadth_alone_tells_no_sides(tmp_path):
     made_up(tmp_path)
-    found = groove.measured(tmp_path)
+    found = groove.measured(tmp_path)[0]["0.9"]
     assert np.isnan(groove.sides({"13": found["13"]})[0].value)

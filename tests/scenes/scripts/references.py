@@ -32,8 +32,8 @@ def row_of_spheres():
 
 
 def replaced():
-    """{"freed": how many of CALLS colliders that others replaced are gone, "loop": what the loop then holds, "contacts":
-    how many contacts it finds}."""
+    """{"freed": how many of CALLS colliders that others replaced are gone, "loop": what the loop then holds,
+    "contacts": how many contacts it finds}."""
     gone = []
     for _ in range(CALLS):
         old = access.yade_engine(InsertionSortCollider)
