@@ -27,6 +27,8 @@ BREADTHS = {"6.5": 6.5e-3, "13": 13e-3, "26": 26e-3}
 """{mm: m}. A laboratory's chisel is 13 mm wide."""
 RADII = {"0.6": 6e-4, "0.9": 9e-4}
 """{mm: m}: four spheres in the depth of cut, and three."""
+SLOWER = {"13, 4 m/s": 4.0, "13, 2 m/s": 2.0}
+"""{case: m/s} of tools 13 mm wide that are slower than those of CUT, in the larger spheres, which cost less."""
 SEEDS = 1, 2, 3
 BESIDE = 0.01
 """m of rock at either side of the tool, two depths of cut, up to spheres that are fixed."""
@@ -49,7 +51,8 @@ QUANTITIES = {"mean force, kN": "force", "over depth and breadth, MJ/m³": "ener
 
 
 def plan(radii):
-    """{(radius, breadth, seed): (folder, script, parameters)}, one packing of all first; breadth "": the laboratory."""
+    """{(radius, case, seed): (folder, script, parameters)}, one packing of all first. A case is a breadth or one of
+    SLOWER; "": the laboratory."""
     found = {}
     for seed in SEEDS:
         for name in radii:
@@ -57,11 +60,24 @@ def plan(radii):
             box = {side: float(f"{size * length:.6g}") for side, length in BOX.items()}
             found[name, "", seed] = (f"lab/{name}-{seed}", COMPRESSION,
                                      dict(rock, **box, test="compression", speed=SPEED, report="false"))
-            for wide, breadth in BREADTHS.items():
-                depth = float(f"{breadth + 2 * BESIDE:.6g}")
-                found[name, wide, seed] = (f"cut/{name}-{wide}-{seed}", SCRIPT,
-                                           dict(CUT, **rock, breadth=breadth, depth=depth))
+            cases = {wide: wider(breadth) for wide, breadth in BREADTHS.items()}
+            if name == max(RADII):
+                cases |= {case: {**wider(BREADTHS["13"]), **slower(speed)} for case, speed in SLOWER.items()}
+            for case, values in cases.items():
+                place = f"cut/{name}-{case.replace(', ', '-').replace(' m/s', 'mps')}-{seed}"
+                found[name, case, seed] = place, SCRIPT, {**CUT, **rock, **values}
     return found
+
+
+def wider(breadth):
+    """Parameters of a tool of a breadth (m)."""
+    return dict(breadth=breadth, depth=float(f"{breadth + 2 * BESIDE:.6g}"))
+
+
+def slower(speed):
+    """Parameters of a tool so fast (m/s) that goes as far."""
+    times = {name: CUT[name] * CUT["velocity"] / speed for name in ("cut_time", "snapshot_period", "record_period")}
+    return dict(times, velocity=speed, lowering_velocity=speed)
 
 
 def of_run(run):
@@ -105,14 +121,14 @@ def off(run):
 
 
 def measured(folder):
-    """({radius: {breadth: {seed: {quantity: Measured}}}}, {radius: [UCS, Pa]}) of the runs that exist."""
+    """({radius: {case: {seed: {quantity: Measured}}}}, {radius: [UCS, Pa]}) of the runs that exist."""
     cuts, ucs = {}, {}
-    for (radius, breadth, seed), (place, _, _) in plan(RADII).items():
+    for (radius, case, seed), (place, _, _) in plan(RADII).items():
         if not (folder / place / "summary.json").exists():
             continue
         run = RunFolder(folder / place)
-        if breadth:
-            cuts.setdefault(radius, {}).setdefault(breadth, {})[seed] = of_run(run)
+        if case:
+            cuts.setdefault(radius, {}).setdefault(case, {})[seed] = of_run(run)
         else:
             ucs.setdefault(radius, []).append(run.result("peak_stress"))
     return cuts, ucs
@@ -121,16 +137,16 @@ def measured(folder):
 def sides(found):
     """(slice, kN/m; sides, kN), each Measured: the line of the mean force over the breadth, in each of the packings
     that have all breadths; unknown without one."""
-    seeds = sorted(set.intersection(*(set(of) for of in found.values()))) if len(found) == len(BREADTHS) else []
+    seeds = sorted(set.intersection(*(set(found.get(name, {})) for name in BREADTHS)))
     if not seeds:
         return steady_record.UNKNOWN, steady_record.UNKNOWN
-    lines = [np.polyfit([BREADTHS[name] for name in found], [of[seed]["force"].value for of in found.values()], 1)
+    lines = [np.polyfit(list(BREADTHS.values()), [found[name][seed]["force"].value for name in BREADTHS], 1)
              for seed in seeds]
     return tuple(map(steady_record.sample_mean, np.transpose(lines)))
 
 
 def rows(found):
-    """Rows of the table of a radius, a breadth each."""
+    """Rows of the table of a radius, a case each."""
     for name, of in found.items():
         cells = (shown(over_packings([one[quantity] for one in of.values()])) for quantity in QUANTITIES.values())
         yield [name, len(of), *cells, f"{100 * max(abs(one['missed'].value) for one in of.values()):.2g} %"]
@@ -141,7 +157,7 @@ def figure(cuts, run):
     drawn, panels = plots.canvas(11, 4, 1, 2 if run else 1)
     axes = panels[0]
     for (radius, found), colour in zip(cuts.items(), palette.OTHER_LINES):
-        for name, of in found.items():
+        for name, of in ((name, found[name]) for name in BREADTHS if name in found):
             axes.plot([1e3 * BREADTHS[name]] * len(of), [one["force"].value for one in of.values()], "o", color=colour)
         a_slice, edges = sides(found)
         if math.isfinite(a_slice.value):
@@ -151,7 +167,8 @@ def figure(cuts, run):
             axes.plot(1e3 * breadth, a_slice.value * breadth, "--", color=colour)
     axes.plot([], [], "--", color=palette.GUIDE, label="without the sides")
     axes.legend()
-    axes.set(xlabel="breadth of the tool / mm", ylabel="mean cutting force / kN", xlim=(0, None), ylim=(0, None))
+    axes.set(xlabel="breadth of the tool / mm", ylabel="mean cutting force / kN", ylim=(0, None),
+             xlim=(0, 1050 * max(BREADTHS.values())))
     if run:
         section(panels[1], run)
     return drawn
@@ -203,7 +220,7 @@ def main(folder, words, **where):
         with Runs(folder, keep=True, **where) as runs:
             jobs = {key: runs.start(place, script, **values)
                     for key, (place, script, values) in plan(words or RADII).items()}
-            failed = wait_for(jobs, lambda key, run: "spheres of {} mm, breadth {} mm, packing {}".format(*key)
+            failed = wait_for(jobs, lambda key, run: "spheres of {} mm, breadth in mm {}, packing {}".format(*key)
                               if key[1] else "spheres of {0} mm, compression, packing {2}".format(*key))
     print(write(folder))
     return failed

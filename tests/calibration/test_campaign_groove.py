@@ -77,6 +77,16 @@ def test_section_of_the_groove_and_what_came_off_below_the_path(tmp_path):
         assert values["energy"].value == pytest.approx(1e-6 * (SIDES / breadth + SLICE) / 5e-3)
 
 
+def test_slower_tools_go_as_far_in_the_larger_spheres():
+    slow = {(radius, case): values for (radius, case, _), (_, _, values) in groove.plan(groove.RADII).items()
+            if case in groove.SLOWER}
+    assert set(slow) == {("0.9", case) for case in groove.SLOWER}
+    for (_, case), values in slow.items():
+        assert values["velocity"] == values["lowering_velocity"] == groove.SLOWER[case] and values["breadth"] == 0.013
+        assert values["velocity"] * values["cut_time"] == pytest.approx(0.03)
+        assert values["velocity"] * values["record_period"] == pytest.approx(4e-5)
+
+
 def test_the_page(tmp_path, monkeypatch):
     monkeypatch.setattr(groove, "DRAWN", ("0.9", "13"))
     made_up(tmp_path)
