@@ -28,7 +28,7 @@ BREADTHS = {"6.5": 6.5e-3, "13": 13e-3, "26": 26e-3}
 RADII = {"0.6": 6e-4, "0.9": 9e-4}
 """{mm: m}: four spheres in the depth of cut, and three."""
 SLOWER = {"13, 4 m/s": 4.0, "13, 2 m/s": 2.0}
-"""{case: m/s} of tools 13 mm wide that are slower than those of CUT, in the larger spheres, which cost less."""
+"""{case: m/s} of tools 13 mm wide that are slower than those of CUT, in the last of RADII, which costs less."""
 SEEDS = 1, 2, 3
 BESIDE = 0.01
 """m of rock at either side of the tool, two depths of cut, up to spheres that are fixed."""
@@ -61,7 +61,7 @@ def plan(radii):
             found[name, "", seed] = (f"lab/{name}-{seed}", COMPRESSION,
                                      dict(rock, **box, test="compression", speed=SPEED, report="false"))
             cases = {wide: wider(breadth) for wide, breadth in BREADTHS.items()}
-            if name == max(RADII):
+            if name == list(RADII)[-1]:
                 cases |= {case: {**wider(BREADTHS["13"]), **slower(speed)} for case, speed in SLOWER.items()}
             for case, values in cases.items():
                 place = f"cut/{name}-{case.replace(', ', '-').replace(' m/s', 'mps')}-{seed}"
