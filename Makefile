@@ -98,7 +98,7 @@ campaign-slow: setup-sweep ## cuts at 8 to 1 m/s that a source makes at 0.04 (ho
 campaign-toughness: setup-sweep ## toughness of four rocks over the size of the specimen (an hour; resumes)
 	$(PYTHON) -m calibration.campaigns.toughness_size $(OUT)/campaign-toughness $(WHERE)
 
-campaign-groove: setup-sweep ## cuts in space by tools of three breadths: what their sides add (two hours; resumes)
+campaign-groove: setup-sweep ## cuts in space by tools of three breadths: what their sides add (three hours; resumes)
 	$(PYTHON) -m calibration.campaigns.groove $(OUT)/campaign-groove $(WHERE)
 
 lint: ## check the code with flake8

@@ -16,7 +16,7 @@ import numpy as np
 
 from calibration import generated
 from calibration.campaigns.runs import Runs, command_line, wait_for
-from calibration.campaigns.steady_cut_numbers import over_packings, scaled, shown
+from calibration.campaigns.steady_cut_numbers import of_forces, over_packings, scaled, shown
 from rockwear.kernels import steady_record
 from rockwear.kernels.fragments import pieces
 from rockwear.report import palette, plots
@@ -90,15 +90,10 @@ def of_run(run):
         "time", "cutting_force", "thrust_force", "tool_friction"))
     distance = run.parameter("velocity") * (time - time[0])
     begin = BEGIN * depth
-    total, pressed = (steady_record.integral(distance, force) for force in (cutting, thrust))
-    mean = steady_record.mean(distance, total, begin)
-    peaks = steady_record.peaks(distance, cutting, depth=depth, begin=begin).mean()
+    found, _ = of_forces(distance, cutting, thrust, friction, depth=depth, begin=begin)
     above, below = broken(run, begin, float(distance[-1]) - depth)
     energy = run.balances["energy"]
-    return {"force": scaled(mean, 1e-3), "energy": scaled(mean, 1e-6 / (depth * breadth)),
-            "peaks": steady_record.quotient(peaks, mean),
-            "thrust": steady_record.ratio(distance, pressed, total, begin),
-            "friction": scaled(steady_record.mean(distance, friction, begin), 1e-3),
+    return {**found, "energy": scaled(found["force"], 1e-3 / (depth * breadth)),
             "section": steady_record.Measured((above + below) / (depth * breadth), math.nan),
             "overbreak": steady_record.Measured(below / (depth * breadth), math.nan),
             "missed": steady_record.Measured(energy["residual"] / energy["tool_work"], math.nan)}

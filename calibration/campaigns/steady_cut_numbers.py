@@ -48,15 +48,26 @@ def tensions(folder, case):
     return strengths(folder, rock if rock in PULLED else BASE, "tension")
 
 
+def of_forces(distance, cutting, thrust, friction, *, depth, begin):
+    """({quantity: Measured}, steady_record.Peaks) of what steady_record.steady_results takes, from `begin` (m) on;
+    forces and friction in thousands of their units."""
+    total, pressed = (steady_record.integral(distance, force) for force in (cutting, thrust))
+    mean = steady_record.mean(distance, total, begin)
+    peaks = steady_record.peaks(distance, cutting, depth=depth, begin=begin)
+    return {"force": scaled(mean, 1e-3), "peak": scaled(peaks.mean(), 1e-3),
+            "peaks": steady_record.quotient(peaks.mean(), mean),
+            "thrust": steady_record.ratio(distance, pressed, total, begin),
+            "pressed": scaled(steady_record.mean(distance, pressed, begin), 1e-3),
+            "friction": scaled(steady_record.mean(distance, friction, begin), 1e-3)}, peaks
+
+
 def of_run(run):
     """{quantity: Measured} of one cut, from BEGIN depths of cut on."""
     depth = run.parameter("depth_of_cut")
     begin = BEGIN * depth
     distance, cutting, thrust, friction = (run.column(name) for name in (
         "distance", "cutting_force", "thrust_force", "tool_friction"))
-    total, pressed = (steady_record.integral(distance, force) for force in (cutting, thrust))
-    mean = steady_record.mean(distance, total, begin)
-    peaks = steady_record.peaks(distance, cutting, depth=depth, begin=begin)
+    found, peaks = of_forces(distance, cutting, thrust, friction, depth=depth, begin=begin)
     spacing = np.ptp(peaks.distance) / (len(peaks.force) - 1) if len(peaks.force) > 1 else math.nan
     x, height = run.table("groove.csv", "x", "height")
     groove = groove_results(x=x[x > begin], height=height[x > begin], chip=float(spacing))
@@ -65,12 +76,8 @@ def of_run(run):
     chip = chip_length(particles=particles[late], area=area[late], length=length[late])
     overbreak = Measured(groove["overbreak"][0], groove["overbreak_standard_error"][0])
     energy, (work, mode) = run.balances["energy"], run.table("cracks.csv", "energy", "mode")
-    return {"force": scaled(mean, 1e-3), "energy": scaled(mean, 1 / depth), "peak": scaled(peaks.mean(), 1e-3),
-            "peaks": steady_record.quotient(peaks.mean(), mean), "overbreak": scaled(overbreak, 1 / depth),
-            "chip": scaled(chip, 1 / depth), "thrust": steady_record.ratio(distance, pressed, total, begin),
-            "pressed": scaled(steady_record.mean(distance, pressed, begin), 1e-3),
-            "friction": scaled(steady_record.mean(distance, friction, begin), 1e-3),
-            "temperature": Measured(warmth(run, begin, WARM * depth), math.nan),
+    return {**found, "energy": scaled(found["force"], 1e3 / depth), "overbreak": scaled(overbreak, 1 / depth),
+            "chip": scaled(chip, 1 / depth), "temperature": Measured(warmth(run, begin, WARM * depth), math.nan),
             "loaded": under_load(distance, cutting, peaks.mean().value, begin),
             "bonds": Measured(energy["bond_breaking"] / energy["tool_work"], math.nan),
             "tension": Measured(float(work[mode == IN_TENSION].sum()) / energy["tool_work"], math.nan),
