@@ -45,25 +45,29 @@ def replaced():
             "contacts": O.interactions.countReal()}
 
 
-def blocks(call):
-    """Blocks of memory that Python has more after CALLS calls."""
-    call()
-    before = sys.getallocatedblocks()
+class Number(int):
+    """An integer that counts those of its kind that are gone."""
+
+    gone = 0
+
+    def __del__(self):
+        Number.gone += 1
+
+
+def freed(call, *values):
+    """Share of new numbers with these values that are gone after `call` with them, CALLS times."""
+    call(*map(Number, values))
+    before = Number.gone
     for _ in range(CALLS):
-        call()
-    return sys.getallocatedblocks() - before
-
-
-def again():
-    """A number that is no object of before."""
-    return int(str(FIRST))
+        call(*map(Number, values))
+    return (Number.gone - before) / (CALLS * len(values))
 
 
 row_of_spheres()
 checks = {
     "replaced": replaced(),
-    "contact": blocks(lambda: access.contact_of(again(), again() + 1)),
-    "states": blocks(lambda: access.states(range(COUNT))),
+    "contact": freed(access.contact_of, FIRST, FIRST + 1),
+    "states": freed(lambda *bodies: access.states(bodies), *range(COUNT)),
     "bodies": [access.contact_of(FIRST, FIRST + 1).id1, access.contact_of(FIRST, FIRST + 1).id2],
     "places": access.states([FIRST, 5])[:, 0].tolist(),
 }
