@@ -27,8 +27,6 @@ BREADTHS = {"6.5": 6.5e-3, "13": 13e-3, "26": 26e-3}
 """{mm: m}. A laboratory's chisel is 13 mm wide."""
 RADII = {"0.6": 6e-4, "0.9": 9e-4}
 """{mm: m}: four spheres in the depth of cut, and three."""
-SLOWER = {"13, 4 m/s": 4.0, "13, 2 m/s": 2.0}
-"""{case: m/s} of tools 13 mm wide that are slower than those of CUT, in the last of RADII, which costs less."""
 SEEDS = 1, 2, 3
 BESIDE = 0.01
 """m of rock at either side of the tool, two depths of cut, up to spheres that are fixed."""
@@ -42,6 +40,15 @@ CUT = dict(rock=ROCK, scale_factor=1.0, width=0.045, height=0.015, gravity=0.0,
            depth_of_cut=5e-3, start=0.0, approach=1e-3, cut_time=3.75e-3, background_damping=500.0,
            snapshot_period=5e-4, record_period=5e-6, report="false")
 """Six depths of way; else as in campaigns.steady_cut."""
+SLOWER = {"13, 4 m/s": 4.0, "13, 2 m/s": 2.0}
+"""{case: m/s}."""
+OTHERS = {
+    "13, rake -15": dict(rake=-15.0), "13, rake 15": dict(rake=15.0),
+    "13, flat 1": dict(wear_flat=1e-3), "13, flat 2": dict(wear_flat=2e-3),
+    "13, 10 deep": dict(depth_of_cut=0.01, width=0.075, height=0.03, depth=0.053, tooth_height=0.024,
+                        tooth_width=0.016, cut_time=7.5e-3)}
+"""{case: parameters} of tools 13 mm wide other than those of CUT: degrees, mm of wear flat, mm of depth with six of them
+of way and two beside. Like SLOWER, in the last of RADII, which costs less."""
 BOX, SPEED = dict(width=0.02, height=0.01, depth=0.01), 0.1
 """Of the laboratory for the first of RADII, m, loaded along its length; m/s of each platen."""
 QUANTITIES = {"mean force, kN": "force", "over depth and breadth, MJ/m³": "energy", "peak / mean": "peaks",
@@ -51,8 +58,8 @@ QUANTITIES = {"mean force, kN": "force", "over depth and breadth, MJ/m³": "ener
 
 
 def plan(radii):
-    """{(radius, case, seed): (folder, script, parameters)}, one packing of all first. A case is a breadth or one of
-    SLOWER; "": the laboratory."""
+    """{(radius, case, seed): (folder, script, parameters)}, one packing of all first. A case is a breadth, one of
+    SLOWER or of OTHERS; "": the laboratory."""
     found = {}
     for seed in SEEDS:
         for name in radii:
@@ -62,9 +69,10 @@ def plan(radii):
                                      dict(rock, **box, test="compression", speed=SPEED, report="false"))
             cases = {wide: wider(breadth) for wide, breadth in BREADTHS.items()}
             if name == list(RADII)[-1]:
-                cases |= {case: {**wider(BREADTHS["13"]), **slower(speed)} for case, speed in SLOWER.items()}
+                others = {case: slower(speed) for case, speed in SLOWER.items()} | OTHERS
+                cases |= {case: {**wider(BREADTHS["13"]), **values} for case, values in others.items()}
             for case, values in cases.items():
-                place = f"cut/{name}-{case.replace(', ', '-').replace(' m/s', 'mps')}-{seed}"
+                place = f"cut/{name}-{case.replace(', ', '-').replace(' m/s', 'mps').replace(' ', '_')}-{seed}"
                 found[name, case, seed] = place, SCRIPT, {**CUT, **rock, **values}
     return found
 
