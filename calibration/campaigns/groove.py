@@ -16,7 +16,7 @@ import numpy as np
 
 from calibration import generated
 from calibration.campaigns.runs import Runs, command_line, wait_for
-from calibration.campaigns.steady_cut_numbers import of_forces, over_packings, scaled, shown
+from calibration.campaigns.steady_cut_numbers import difference, of_forces, over_packings, scaled, shown
 from rockwear.kernels import steady_record
 from rockwear.kernels.fragments import pieces
 from rockwear.report import palette, plots
@@ -45,16 +45,22 @@ SLOWER = {"13, 4 m/s": 4.0, "13, 2 m/s": 2.0}
 OTHERS = {
     "13, rake -15": dict(rake=-15.0), "13, rake 15": dict(rake=15.0),
     "13, flat 1": dict(wear_flat=1e-3), "13, flat 2": dict(wear_flat=2e-3),
+    "13, 30 J/m2": dict(bond_fracture_energy=30.0),
     "13, 10 deep": dict(depth_of_cut=0.01, width=0.075, height=0.03, depth=0.053, tooth_height=0.024,
                         tooth_width=0.016, cut_time=7.5e-3)}
-"""{case: parameters} of tools 13 mm wide other than those of CUT: degrees, mm of wear flat, mm of depth with six of them
-of way and two beside. Like SLOWER, in the last of RADII, which costs less."""
+"""{case: parameters} of tools 13 mm wide that differ from those of CUT in one thing: degrees, mm of wear flat, fracture
+energy of the bonds in tension, mm of depth with six of them of way and two beside. Like SLOWER, in the last of RADII,
+which costs less."""
 BOX, SPEED = dict(width=0.02, height=0.01, depth=0.01), 0.1
 """Of the laboratory for the first of RADII, m, loaded along its length; m/s of each platen."""
 QUANTITIES = {"mean force, kN": "force", "over depth and breadth, MJ/m³": "energy", "peak / mean": "peaks",
               "thrust / cutting": "thrust", "friction, kN": "friction", "groove over tool": "section",
               "overbreak / depth": "overbreak"}
 """{heading: quantity of of_run}."""
+CHANGES = {"force, kN": "force", "thrust, kN": "pressed", "friction, kN": "friction", "peak / mean": "peaks",
+           "groove over tool": "section", "overbreak / depth": "overbreak"}
+"""{heading: quantity of of_run} of the table beside the tool of CUT."""
+BASE = "13"
 
 
 def plan(radii):
@@ -70,11 +76,15 @@ def plan(radii):
             cases = {wide: wider(breadth) for wide, breadth in BREADTHS.items()}
             if name == list(RADII)[-1]:
                 others = {case: slower(speed) for case, speed in SLOWER.items()} | OTHERS
-                cases |= {case: {**wider(BREADTHS["13"]), **values} for case, values in others.items()}
+                cases |= {case: {**wider(BREADTHS[BASE]), **values} for case, values in others.items()}
             for case, values in cases.items():
-                place = f"cut/{name}-{case.replace(', ', '-').replace(' m/s', 'mps').replace(' ', '_')}-{seed}"
-                found[name, case, seed] = place, SCRIPT, {**CUT, **rock, **values}
+                found[name, case, seed] = f"cut/{name}-{file_name(case)}-{seed}", SCRIPT, {**CUT, **rock, **values}
     return found
+
+
+def file_name(case):
+    """As in the name of a folder: 13-4mps for "13, 4 m/s"."""
+    return case.replace(", ", "-").replace(" m/s", "mps").replace(" ", "_").replace("/", "")
 
 
 def wider(breadth):
@@ -155,6 +165,21 @@ def rows(found):
         yield [name, len(of), *cells, f"{100 * max(abs(one['missed'].value) for one in of.values()):.2g} %"]
 
 
+def changes(found):
+    """Rows of the table of a radius: what each case changes in the packings that BASE has, too."""
+    for name, of in found.items():
+        seeds = of.keys() & found.get(BASE, {}).keys() if name not in BREADTHS else ()
+        if seeds:
+            here, base = (_over({seed: each[seed] for seed in seeds}) for each in (of, found[BASE]))
+            by = [(difference(here, base, what), base[what].value) for what in CHANGES.values()]
+            yield [name, len(seeds), *(f"{shown(change)} ({100 * change.value / value:+.0f} %)" for change, value in by)]
+
+
+def _over(each):
+    """{quantity: Measured} over packings, with themselves as "each"."""
+    return {"each": each, **{what: over_packings([one[what] for one in each.values()]) for what in CHANGES.values()}}
+
+
 def figure(cuts, run):
     """The mean force over the breadth, and a section across the groove of a run (None: without)."""
     drawn, panels = plots.canvas(11, 4, 1, 2 if run else 1)
@@ -203,6 +228,10 @@ def write(folder):
         if radius in ucs:
             lines += [f"UCS {generated.mean_cell(1e-6 * np.array(ucs[radius]))} MPa ({len(ucs[radius])} packings).", ""]
         lines += generated.table(["breadth, mm", "packings", *QUANTITIES, "energy missed"], rows(found))
+        beside = list(changes(found))
+        if beside:
+            lines += [f"Beside a tool {BASE} mm wide, in packings in common:", "",
+                      *generated.table(["case", "packings", *CHANGES], beside)]
         a_slice, edges = sides(found)
         if math.isfinite(a_slice.value):
             lines += [f"The mean force is {shown(edges)} kN at the sides and {shown(a_slice)} kN per metre of breadth "

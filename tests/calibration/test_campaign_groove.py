@@ -87,6 +87,27 @@ def test_slower_tools_go_as_far_in_the_larger_spheres():
         assert values["velocity"] * values["record_period"] == pytest.approx(4e-5)
 
 
+def test_other_tools_differ_from_the_base_by_what_they_are_for():
+    plan = {(case, seed): values for (radius, case, seed), (_, _, values) in groove.plan(["0.9"]).items()}
+    for case, values in groove.OTHERS.items():
+        base = plan["13", 2]
+        assert {name: of for name, of in plan[case, 2].items() if base.get(name) != of} == values
+    deep = plan["13, 10 deep", 1]
+    assert deep["velocity"] * deep["cut_time"] == pytest.approx(6 * deep["depth_of_cut"])
+    assert deep["depth"] == pytest.approx(deep["breadth"] + 4 * deep["depth_of_cut"])
+
+
+def test_changes_are_those_of_the_same_packings(tmp_path):
+    """A case whose force is 0.1 kN higher in two packings that differ by 0.5 kN."""
+    made_up(tmp_path)
+    found = groove.measured(tmp_path)[0]["0.9"]
+    base, case = ({seed: {**one, "force": groove.steady_record.Measured(1.0 + 0.5 * seed + more, 0.02)}
+                   for seed, one in found["13"].items()} for more in (0.0, 0.1))
+    rows = dict((name, cells) for name, _, *cells in groove.changes({"6.5": found["6.5"], "13": base, "flat": {
+        seed: case[seed] for seed in (2, 3)}}))
+    assert set(rows) == {"flat"} and rows["flat"][0].startswith("0.1 ± 0.02 (+4 %)")
+
+
 def test_the_page(tmp_path, monkeypatch):
     monkeypatch.setattr(groove, "DRAWN", ("0.9", "13"))
     made_up(tmp_path)
