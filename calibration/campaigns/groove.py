@@ -172,7 +172,7 @@ def changes(found):
         if seeds:
             here, base = (_over({seed: each[seed] for seed in seeds}) for each in (of, found[BASE]))
             by = [(difference(here, base, what), base[what].value) for what in CHANGES.values()]
-            yield [name, len(seeds), *(f"{shown(change)} ({100 * change.value / value:+.0f} %)" for change, value in by)]
+            yield [name, len(seeds), *(f"{shown(change)} ({100 * change.value / of:+.0f} %)" for change, of in by)]
 
 
 def _over(each):
