@@ -25,8 +25,8 @@ from rockwear.report.folder import RunFolder
 SCRIPT, COMPRESSION = "yade_scripts/cutting_3d_triangles.py", "yade_scripts/uniaxial_3d.py"
 BREADTHS = {"6.5": 6.5e-3, "13": 13e-3, "26": 26e-3}
 """{mm: m}. A laboratory's chisel is 13 mm wide."""
-RADII = {"0.6": 6e-4, "0.9": 9e-4}
-"""{mm: m}: four spheres in the depth of cut, and three."""
+RADII = {"0.45": 4.5e-4, "0.6": 6e-4, "0.9": 9e-4}
+"""{mm: m}: 5.6 spheres in the depth of cut, four, and three."""
 SEEDS = 1, 2, 3
 BESIDE = 0.01
 """m of rock at either side of the tool, two depths of cut, up to spheres that are fixed."""
@@ -49,10 +49,11 @@ OTHERS = {
     "13, 10 deep": dict(depth_of_cut=0.01, width=0.075, height=0.03, depth=0.053, tooth_height=0.024,
                         tooth_width=0.016, cut_time=7.5e-3)}
 """{case: parameters} of tools 13 mm wide that differ from those of CUT in one thing: degrees, mm of wear flat, fracture
-energy of the bonds in tension, mm of depth with six of them of way and two beside. Like SLOWER, in the last of RADII,
-which costs less."""
+energy of the bonds in tension, mm of depth with six of them of way and two beside."""
+CASES = {"0.45": ["13", "13, flat 2"], "0.6": BREADTHS, "0.9": [*BREADTHS, *SLOWER, *OTHERS]}
+"""{radius: cases}."""
 BOX, SPEED = dict(width=0.02, height=0.01, depth=0.01), 0.1
-"""Of the laboratory for the first of RADII, m, loaded along its length; m/s of each platen."""
+"""Of the laboratory for spheres of 0.6 mm, m, loaded along its length; m/s of each platen."""
 QUANTITIES = {"mean force, kN": "force", "over depth and breadth, MJ/m³": "energy", "peak / mean": "peaks",
               "thrust / cutting": "thrust", "friction, kN": "friction", "groove over tool": "section",
               "overbreak / depth": "overbreak"}
@@ -64,22 +65,25 @@ BASE = "13"
 
 
 def plan(radii):
-    """{(radius, case, seed): (folder, script, parameters)}, one packing of all first. A case is a breadth, one of
-    SLOWER or of OTHERS; "": the laboratory."""
+    """{(radius, case, seed): (folder, script, parameters)}, one packing of all first. A case is one of CASES; "": the
+    laboratory."""
     found = {}
     for seed in SEEDS:
         for name in radii:
-            size, rock = RADII[name] / next(iter(RADII.values())), dict(rock=ROCK, radius=RADII[name], seed=seed)
+            size, rock = RADII[name] / RADII["0.6"], dict(rock=ROCK, radius=RADII[name], seed=seed)
             box = {side: float(f"{size * length:.6g}") for side, length in BOX.items()}
             found[name, "", seed] = (f"lab/{name}-{seed}", COMPRESSION,
                                      dict(rock, **box, test="compression", speed=SPEED, report="false"))
-            cases = {wide: wider(breadth) for wide, breadth in BREADTHS.items()}
-            if name == list(RADII)[-1]:
-                others = {case: slower(speed) for case, speed in SLOWER.items()} | OTHERS
-                cases |= {case: {**wider(BREADTHS[BASE]), **values} for case, values in others.items()}
-            for case, values in cases.items():
-                found[name, case, seed] = f"cut/{name}-{file_name(case)}-{seed}", SCRIPT, {**CUT, **rock, **values}
+            for case in CASES[name]:
+                place = f"cut/{name}-{file_name(case)}-{seed}"
+                found[name, case, seed] = place, SCRIPT, {**CUT, **rock, **changed(case)}
     return found
+
+
+def changed(case):
+    """Parameters of a case other than those of CUT."""
+    other = slower(SLOWER[case]) if case in SLOWER else OTHERS.get(case, {})
+    return {**wider(BREADTHS.get(case, BREADTHS[BASE])), **other}
 
 
 def file_name(case):
