@@ -91,13 +91,14 @@ def test_what_was_measured_is_kept_for_tables_without_its_runs(tmp_path):
     found = {case: numbers.of_case(tmp_path, "base") for case in ("base", "eight discs")}
     numbers.keep(found, tmp_path / "kept.json")
     again = numbers.kept(tmp_path / "kept.json")
-    assert str(again) == str(found) and again["base"]["each"][1]["force"] == found["base"]["each"][1]["force"]
+    assert json.dumps(again) == json.dumps(found)
+    assert again["base"]["each"][1]["force"] == found["base"]["each"][1]["force"]
     assert tables.causes(again) == tables.causes(found)
     elsewhere = tmp_path / "elsewhere"
     elsewhere.mkdir()
     text = steady_cut.write(elsewhere, again)
     assert "2 cases of rockwear 0.0.0" in text and "| eight discs | 1 | 9 | 50" in text
-    assert str(numbers.kept(elsewhere / "steady_cut.json")) == str(found)
+    assert json.dumps(numbers.kept(elsewhere / "steady_cut.json")) == json.dumps(found)
     # Its own runs come first.
     write_run(elsewhere / "cut/eight_discs-2")
     assert "1 cases of rockwear 0.0.0" in steady_cut.write(elsewhere, again)

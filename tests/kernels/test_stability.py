@@ -139,13 +139,15 @@ def test_lanczos_agrees_with_all_eigenvalues(monkeypatch):
 
 
 def test_reference_of_the_specimen():
-    """109 mm specimen, 20e9 N/m: near 3.3e-7 s for kt = kn, 6.07e-7 s for kt = kn/5; packings scatter."""
-    p = pack(box=(0.109, 0.109), radius_min=1e-3, radius_max=1.5e-3, porosity=0.12, seed=1)
-    mass = 2500 / 0.88 * np.pi * p.radii**2
-    s = {"positions": p.positions, "radii": p.radii, "masses": mass, "inertias": 0.5 * mass * p.radii**2,
-         "bonds": contacts(p.positions, p.radii)}
-    assert critical_time_step(**s, kn=20e9, kt=20e9) == pytest.approx(3.32e-7, rel=0.04)
-    assert critical_time_step(**s, kn=20e9, kt=4e9) == pytest.approx(6.07e-7, rel=0.02)
+    """109 mm specimen, 20e9 N/m: near 3.3e-7 s for kt = kn, 6.07e-7 s for kt = kn/5, in the mean of five packings."""
+    steps = []
+    for seed in range(1, 6):
+        p = pack(box=(0.109, 0.109), radius_min=1e-3, radius_max=1.5e-3, porosity=0.12, seed=seed)
+        mass = 2500 / 0.88 * np.pi * p.radii**2
+        s = {"positions": p.positions, "radii": p.radii, "masses": mass, "inertias": 0.5 * mass * p.radii**2,
+             "bonds": contacts(p.positions, p.radii)}
+        steps.append([critical_time_step(**s, kn=20e9, kt=kt) for kt in (20e9, 4e9)])
+    assert np.mean(steps, axis=0) == pytest.approx([3.32e-7, 6.07e-7], rel=0.025)
 
 
 def test_time_integration_on_either_side():

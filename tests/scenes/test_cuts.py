@@ -35,7 +35,7 @@ def test_equal_particles_go_once_they_are_worn_by_their_diameter(tmp_path):
     assert gone.sum() == value(done, "particles_removed") > 0 and value(done, "dropped_volume") == 0
     assert value(done, "mass_lost") == pytest.approx(gone.mean(), rel=1e-9)
     # They are of the tip, and took their diameter times its width along, and what came in the last two steps.
-    assert model["tool_positions"][gone, 1].max() < 2 * DISCS and depth[~gone].max() < DISCS
+    assert model["tool_positions"][gone, 1].max() < 4 * DISCS and depth[~gone].max() < DISCS
     volume = value(done, "worn_volume") - model["tool_radii"][0] * 2 * depth.sum()
     assert 1 <= volume / (gone.sum() * (2 * model["tool_radii"][0])**2) < 1.2
 
@@ -52,9 +52,9 @@ def test_conduction_changes_temperatures_alone(heated):
     """Nothing is removed and the hardness is constant: the same cut, step by step."""
     assert len({tuple(run.summary["balances"]["friction"].values()) for run in heated.values()}) == 1
     spread, kept = heated.values()
-    for name in ("tool_temperature_max", "rock_temperature_max"):
-        assert 293.2 < value(spread, name) < value(kept, name)
-    assert value(spread, "tool_temperature_max") - 293.15 < 0.8 * (value(kept, "tool_temperature_max") - 293.15)
+    # A disc of the rock that touches the tool can be warmed by it.
+    assert min(value(run, "rock_temperature_max") for run in heated.values()) > 293.2
+    assert 0.05 < value(spread, "tool_temperature_max") - 293.15 < 0.8 * (value(kept, "tool_temperature_max") - 293.15)
     tools = [last_snapshot(run.out)["temperature"][-value(run, "tool_particles"):] > 293.1501 for run in (spread, kept)]
     # It reaches particles that rub nowhere.
     assert tools[0][tools[1]].all() and tools[0].sum() > 2 * tools[1].sum()

@@ -73,7 +73,7 @@ def lattice_modulus(out, **values):
 
 
 def test_the_default_step_of_the_laboratory_is_short_enough_for_its_damping(tmp_path):
-    """Long before a step blows up, Cundall's damping makes discs chatter, and the specimen too stiff."""
+    """Long before a step blows up, Cundall's damping makes discs chatter, and the specimen too stiff, or too soft."""
     assert lattice_modulus(tmp_path / "default") == pytest.approx(1.0, abs=1e-3)
-    # At 0.8 it is 1.0026 since the modulus is taken below 25 % of the peak, and 1.025 here.
-    assert lattice_modulus(tmp_path / "longer", time_step_fraction=0.95) > 1.005
+    # 1.025 with YADE 2023.02, 0.964 with 2025.2; at 0.8 1.0026.
+    assert abs(lattice_modulus(tmp_path / "longer", time_step_fraction=0.95) - 1.0) > 0.005

@@ -44,7 +44,8 @@ def test_the_window_moves_and_the_balance_closes(never):
     part = 0.03 if "bond_law" in never.options else 0.02
     assert abs(energy["residual"]) < part * energy["tool_work"]
     assert (energy["rock_crushing"] > 0.05 * energy["tool_work"]) == ("bond_crushing" in never.options)
-    assert history(never.out)["distance [m]"][-1] == pytest.approx(SMALL["cut_length"], abs=2e-4)
+    # To the next record, 0.1 mm of way, and the speed rises in steps.
+    assert history(never.out)["distance [m]"][-1] == pytest.approx(SMALL["cut_length"], abs=3e-4)
     assert value(never, "window_passed") >= 4 * (SMALL["window_behind"] + SMALL["window_ahead"]) / 16
     if "control_radius" in never.options:
         # Absent particles have no density, reduced radii no less mass.

@@ -57,8 +57,8 @@ def test_energy_balance(cut):
 
 
 def test_energy_that_the_balance_misses_is_said_and_without_heat_there_is_no_heat_engine(cut, tmp_path):
-    """Forces sampled every 100 steps only, some of a collision's length."""
-    run = tooth_cycles(tmp_path / "out", heat="false", cycles=0, report="false", sampling_period=100)
+    """Forces sampled every 1000 steps only, more than a collision's length."""
+    run = tooth_cycles(tmp_path / "out", heat="false", cycles=0, report="false", sampling_period=1000)
     assert run.code == 0, run.stderr
     energy = run.summary["balances"]["energy"]
     assert abs(energy["residual"]) > 0.05 * energy["tool_work"]
@@ -228,7 +228,7 @@ def test_a_worn_tool_gets_the_time_to_come_to_the_rock(tmp_path):
     low = model["tool_positions"][:, 1] - model["tool_radii"] < SMALL["depth_of_cut"]
     fronts = model["tool_positions"][:, 0] + model["tool_radii"]
     behind = fronts[low].max() - np.array([fronts[low & end["alive"]].max() for end in ends])
-    assert behind[2] >= behind[0] > 1e-3
+    assert behind[2] >= behind[0] > 5e-4
     times = np.array([float(end["time"]) for end in ends])
     assert np.diff(times) == pytest.approx(seconds + behind[:-1] / 4.0, abs=2 * value(run, "time_step"))
     # The way to the rock is no work: not in the time that wear stands for, nor in the rock that is cut.
