@@ -52,6 +52,12 @@ def test_all_targets_are_met_and_the_rock_can_be_read(run, tmp_path, name):
     assert space.measured["ucs"]["packings"] == in_space.CHECKS
 
 
+def test_the_energy_of_shear_can_be_given(run, tmp_path):
+    run("--rock", "medium_sandstone", "--bond_shear_energy", 1000)
+    space = rock_file.read(tmp_path / "out" / "rock.json", OF_ROCK).parts["space"].parameters
+    assert space["bond_shear_energy"] == 1000 and space["bond_fracture_energy"] == 16
+
+
 def test_what_is_not_reached_is_said(run, monkeypatch, tmp_path):
     """A tensile strength that nothing changes."""
     def stuck(laboratory, x, seeds):
@@ -82,6 +88,7 @@ def test_the_check_is_of_packings_that_the_search_has_not_seen(run, monkeypatch,
     (("--rock", "no_such"), "rock = no_such"),
     (("--rock", "bentheim"), "rock = bentheim: must be a rock with a target"),
     (("--rock", "medium_sandstone", "--radius", "0"), "radius = 0"),
+    (("--rock", "hawkesbury", "--bond_shear_energy", "500"), "bond_shear_energy = 500 J/m2: must be left out"),
     (("--rock", "medium_sandstone", "--jobs", "1000000"), "jobs = 1000000: must be at most ")])
 def test_what_cannot_be_used_is_refused_in_one_line(run, tmp_path, words, said):
     code, shown, wrong = run(*words)
@@ -108,7 +115,7 @@ def test_blocks_grow_with_their_spheres_and_their_parameters_are_the_scripts(tmp
 
     rock = rock_file.read(rock_file.find("crushing_sandstone"), OF_ROCK)
     for radius in (3e-4, 6e-4):
-        laboratory = BlockLaboratory(runs=Kept(), rock=rock, radius=radius)
+        laboratory = BlockLaboratory(runs=Kept(), rock=rock, radius=radius, given={})
         laboratory.measure(in_space.FIRST, [7])
     fine, coarse = (started["tension-7", radius] for radius in (3e-4, 6e-4))
     assert all(coarse[name] == pytest.approx(2 * fine[name], rel=1e-3)
