@@ -6,9 +6,9 @@ Blocks of some 1440 spheres are compressed and pulled until E, nu, UCS and tensi
 file; then other packings are tested. Fitted are the stiffnesses of the bonds and their two strengths; friction,
 fracture energies and crushing are those of the plane, and there are no grains. Where slip does not damage the bonds of
 the plane, UCS over tensile strength stays near six without grains; --bond_shear_energy 1000 doubles it. nu is that of a
-pulled block: in a compressed one the first cracks open along the load. The toughness in space is not
-measured. Writes DIR/rock.json, the rock with both parts, and DIR/in_space.md. What was interrupted goes on where it was
-when it is started again with the same words.
+pulled block: in a compressed one the first cracks open along the load. The toughness in space is not measured. Writes
+DIR/rock.json, the rock with both parts, and DIR/in_space.md. What was interrupted goes on where it was when it is
+started again with the same words.
 """
 import hashlib
 import json
