@@ -202,9 +202,10 @@ class Turns(Programme):
 
 
 def hot_and_mean(network, first):
-    """Mean temperatures (K) of the hottest part of the mass of the nodes from `first` on, and of all of it."""
-    capacity, temperature = network.capacity[first:], network.temperature[first:]
-    order = np.argsort(-temperature)
-    order = order[capacity[order] > 0]
-    hottest = order[:max(1, round(HOTTEST * len(order)))]
-    return tuple(float(np.average(temperature[part], weights=capacity[part])) for part in (hottest, order))
+    """Mean temperatures (K) of the hottest part of the mass of the nodes from `first` on, at least the heaviest node's,
+    and of all of it. Where no node becomes colder, neither does the part: it is as heavy whatever the order."""
+    order = first + np.argsort(-network.temperature[first:])
+    capacity, temperature = network.capacity[order], network.temperature[order]
+    part = max(HOTTEST * capacity.sum(), capacity.max())
+    hottest = np.clip(part - (np.cumsum(capacity) - capacity), 0.0, capacity)
+    return tuple(float(np.average(temperature, weights=weights)) for weights in (hottest, capacity))
