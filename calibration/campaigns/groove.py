@@ -4,9 +4,10 @@
 
 Tools of the breadths BREADTHS cut `crushing_sandstone` in space, of spheres of the radii RADII (mm), to the same depth.
 The mean force grows as that of a slice times the breadth, and what is left at no breadth is cut at the tool's two
-sides. The rock is crushed in the laboratory, too. N runs at a time (2), or as many as a dask scheduler's workers take;
-a folder a run; finished runs are not repeated, so that an interrupted campaign resumes. --read starts no run and
-evaluates those that exist. Writes into DIR groove.md, groove.png and provenance.json.
+sides. Other tools of 13 mm stand beside that one. The rock is crushed in the laboratory, too. N runs at a time (2), or
+as many as a dask scheduler's workers take; a folder a run; finished runs are not repeated, so that an interrupted
+campaign resumes. --read starts no run and evaluates those that exist. Writes into DIR groove.md, groove.png and
+provenance.json.
 """
 import math
 import sys
@@ -62,6 +63,7 @@ CHANGES = {"force, kN": "force", "thrust, kN": "pressed", "friction, kN": "frict
            "groove over tool": "section", "overbreak / depth": "overbreak"}
 """{heading: quantity of of_run} of the table beside the tool of CUT."""
 BASE = "13"
+"""Case beside which the other tools stand."""
 
 
 def plan(radii):
@@ -171,10 +173,10 @@ def rows(found):
 
 def changes(found):
     """Rows of the table of a radius: what each case changes in the packings that BASE has, too."""
-    for name, of in found.items():
-        seeds = of.keys() & found.get(BASE, {}).keys() if name not in BREADTHS else ()
+    for name, each in found.items():
+        seeds = each.keys() & found.get(BASE, {}).keys() if name not in BREADTHS else ()
         if seeds:
-            here, base = (_over({seed: each[seed] for seed in seeds}) for each in (of, found[BASE]))
+            here, base = (_over({seed: of[seed] for seed in seeds}) for of in (each, found[BASE]))
             by = [(difference(here, base, what), base[what].value) for what in CHANGES.values()]
             yield [name, len(seeds), *(f"{shown(change)} ({100 * change.value / of:+.0f} %)" for change, of in by)]
 
@@ -209,7 +211,7 @@ def figure(cuts, run):
 def section(axes, run):
     """Rock across the cut where the tool has passed: what came off, and the tool's own section."""
     first, loose = run.snapshot(0)["rock_positions"], off(run)
-    radius, (width, height, depth) = run.parameter("radius"), run.model["block"]
+    radius, (_, height, depth) = run.parameter("radius"), run.model["block"]
     breadth, cut = run.parameter("breadth"), run.parameter("depth_of_cut")
     here = np.abs(first[:, 0] - 2.5 * cut) < radius
     for these, colour in ((here & ~loose, palette.ROCK), (here & loose, palette.REMOVED)):

@@ -14,23 +14,21 @@ import hashlib
 import json
 import math
 import sys
-from pathlib import Path
 
 import numpy as np
 
 from calibration import command, generated
-from calibration.campaigns.runs import RunFailed, Runs, as_they_end, require_dask
-from calibration.fitting.rock_fit import COMMON_SEEDS, check_jobs, exit_code, statistics, verdict
-from calibration.fitting.rock_page import allowed, off, shown
+from calibration.campaigns.runs import RunFailed, Runs, as_they_end
+from calibration.fitting.rock_fit import COMMON_SEEDS, exit_code, statistics, verdict
+from calibration.fitting.rock_page import allowed, measured, off, shown
 from calibration.fitting.rock_tests import COMMON, DROP
 from calibration.fitting.rock_unknowns import Observable
+from calibration.fitting.size_powers import folders, plane_rock
 from calibration.fitting.surrogate import Problem, Surrogate, solve
 from calibration.laboratory.loading import loading, strength
 from rockwear.kernels.checks import ParameterError, require
 from rockwear.kernels.parameter import Group, Parameter, above_zero, file, integer, number, text
-from rockwear.model import rock_file
 from rockwear.run import parameters
-from rockwear.scenes.parameters import OF_ROCK
 
 SCRIPT = "yade_scripts/uniaxial_3d.py"
 LAWS = "cohesive", "coulomb"
@@ -52,11 +50,12 @@ SEARCHES, ENOUGH = 7, 0.5
 """Sets of tests at most, before the check; part of what is allowed that they may miss."""
 CHECKED, CHECKS = 20, 5
 """Seeds of the check lie above this, and above those of the search; its packings."""
-GROUPS = [Group("rock", (
-    Parameter("rock", "", "", file, "rock with a part for the plane, a name of the library or a file", "yours"),
-    Parameter("radius", 6e-4, "m", above_zero, "radius of the spheres"),
-    Parameter("bond_shear_energy", 0.0, "J/m2", number(0), "work to break a bond in shear without normal force, over "
-              "its area, for want of grains that interlock; 0: that of the plane; of cohesive bonds alone"))),
+GROUPS = [
+    Group("rock", (
+        Parameter("rock", "", "", file, "rock with a part for the plane, a name of the library or a file", "yours"),
+        Parameter("radius", 6e-4, "m", above_zero, "radius of the spheres"),
+        Parameter("bond_shear_energy", 0.0, "J/m2", number(0), "work to break a bond in shear without normal force, "
+                  "over its area, for want of grains that interlock; 0: that of the plane; of cohesive bonds alone"))),
     Group("search", (Parameter("packings", 3, "", integer(2), "packings of each set of tests"),
                      Parameter("jobs", 2, "", integer(1), "tests at a time"))),
     Group("output", (Parameter("out", "", "", text, "folder of rock.json, in_space.md and all runs"),))]
@@ -119,9 +118,7 @@ def search(measure, of):
 def with_space(data, given, *, radius, verdicts):
     """The rock file `data`, as JSON has it, with a part for space. given: {parameter: value}; verdicts: {Observable:
     Verdict}."""
-    measured = {o.name: {"mean": one.mean, "standard_deviation": one.deviation, "packings": one.count, "unit": o.unit}
-                for o, one in verdicts.items()}
-    return {**data, "space": {"parameters": given, "resolution": {"radius": radius}, "measured": measured}}
+    return {**data, "space": {"parameters": given, "resolution": {"radius": radius}, "measured": measured(verdicts)}}
 
 
 def page(name, given, solution, verdicts, *, radius):
@@ -151,16 +148,13 @@ def page(name, given, solution, verdicts, *, radius):
 
 def rock_of(values):
     """(the rock file as JSON has it, its RockFile). Raises ParameterError."""
-    require(values["rock"], "rock", "nothing", "given: a name of the library, or a file")
-    path = rock_file.find(values["rock"])
-    rock = rock_file.read(path, OF_ROCK)
-    require("plane" in rock.parts, "rock", values["rock"], "a rock with a part for the plane")
+    data, rock = plane_rock(values["rock"])
     law, energy = rock.parts["plane"].parameters["bond_law"], values["bond_shear_energy"]
     require(law in LAWS, "rock", f"{values['rock']}, bond_law = {law}", f"a rock of {' or '.join(LAWS)} bonds")
     require(not energy or law == "cohesive", "bond_shear_energy", energy, f"left out with bond_law = {law}", "J/m2")
     for name in ("youngs_modulus", "poissons_ratio", "ucs", "tensile_strength"):
         require(name in rock.targets, "rock", values["rock"], f"a rock with a target for {name}")
-    return json.loads(Path(path).read_text(encoding="utf-8")), rock
+    return data, rock
 
 
 def given_of(values):
@@ -175,11 +169,7 @@ def main(words):
     try:
         values = parameters.read(GROUPS, words)
         data, rock = rock_of(values)
-        check_jobs(values["jobs"])
-        require(values["out"], "out", "nothing", "given: the folder of the results")
-        require_dask()
-        folder = command.made(Path(values["out"]))
-        runs_at = command.made(folder / "runs")
+        folder, runs_at = folders(values)
     except ParameterError as error:
         print(f"error: {error}", file=sys.stderr)
         return 2

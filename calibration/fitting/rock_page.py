@@ -114,27 +114,29 @@ def write(folder, found, *, micro, targets, values):
     generated.write_page(folder / "fit.md", page(found, micro=micro, targets=targets, values=values))
 
 
+def measured(verdicts):
+    """{property: what the laboratory measured of it} of {Observable: Verdict}, as a rock file has it."""
+    return {o.name: {"mean": one.mean, "standard_deviation": one.deviation, "packings": one.count, "unit": o.unit}
+            for o, one in verdicts.items()}
+
+
 def rock_file(found, *, micro, targets, values):
     """The rock as a dict of the format of rockwear.model.rock_file."""
-    measured = {}
-    for o, one in found.verdicts.items():
-        if o.test != "triaxial":
-            measured[o.name] = {"mean": one.mean, "standard_deviation": one.deviation, "packings": one.count,
-                                "unit": o.unit}
+    of_rock = measured({o: one for o, one in found.verdicts.items() if o.test != "triaxial"})
     confined = {o: one for o, one in found.verdicts.items() if o.test == "triaxial"}
     if confined:
-        measured["triaxial"] = {"mean": [[o.confinement, one.mean] for o, one in confined.items()],
-                                "standard_deviation": [one.deviation for one in confined.values()],
-                                "packings": next(iter(confined.values())).count, "unit": "Pa"}
+        of_rock["triaxial"] = {"mean": [[o.confinement, one.mean] for o, one in confined.items()],
+                               "standard_deviation": [one.deviation for one in confined.values()],
+                               "packings": next(iter(confined.values())).count, "unit": "Pa"}
     for name, (values_of, unit) in envelope(found, micro).items():
-        measured[name] = {"mean": float(values_of.mean()), "standard_deviation": float(values_of.std(ddof=1)),
-                          "packings": len(values_of), "unit": unit}
+        of_rock[name] = {"mean": float(values_of.mean()), "standard_deviation": float(values_of.std(ddof=1)),
+                         "packings": len(values_of), "unit": unit}
     return {"format": FORMAT, "name": values["name"], "source": values["source"],
             "targets": {name: {"value": value, "unit": PROPERTIES[name][0]}
                         for name, value in targets.as_properties().items()},
             "plane": {"parameters": micro.parameters(found.x),
                       "resolution": {name: values[name] for name in ("radius_min", "radius_max")},
-                      "measured": measured}}
+                      "measured": of_rock}}
 
 
 def page(found, *, micro, targets, values):

@@ -141,16 +141,32 @@ def page(name, solution, rows, *, factor, packings):
     return lines
 
 
+def plane_rock(word):
+    """(the rock file as JSON has it, its RockFile) of a rock with a part for the plane. Raises ParameterError."""
+    require(word, "rock", "nothing", "given: a name of the library, or a file")
+    path = rock_file.find(word)
+    rock = rock_file.read(path, OF_ROCK)
+    require("plane" in rock.parts, "rock", word, "a rock with a part for the plane")
+    return json.loads(Path(path).read_text(encoding="utf-8")), rock
+
+
+def folders(values):
+    """(folder of the results, folder of their runs), made, of a command with `jobs` and `out`. Raises
+    ParameterError."""
+    check_jobs(values["jobs"])
+    require(values["out"], "out", "nothing", "given: the folder of the results")
+    require_dask()
+    folder = command.made(Path(values["out"]))
+    return folder, command.made(folder / "runs")
+
+
 def rock_of(values):
     """The rock file, as JSON has it. Raises ParameterError."""
-    require(values["rock"], "rock", "nothing", "given: a name of the library, or a file")
-    path = rock_file.find(values["rock"])
-    rock = rock_file.read(path, OF_ROCK)
-    require("plane" in rock.parts, "rock", values["rock"], "a rock with a part for the plane")
+    data, rock = plane_rock(values["rock"])
     law = rock.parts["plane"].parameters["bond_law"]
     require(law == "cohesive", "rock", f"{values['rock']}, bond_law = {law}", "a rock of cohesive bonds: others have "
             "no such powers")
-    return json.loads(Path(path).read_text(encoding="utf-8"))
+    return data
 
 
 def main(words):
@@ -160,11 +176,7 @@ def main(words):
     try:
         values = parameters.read(GROUPS, words)
         data = rock_of(values)
-        check_jobs(values["jobs"])
-        require(values["out"], "out", "nothing", "given: the folder of the results")
-        require_dask()
-        folder = command.made(Path(values["out"]))
-        runs_at = command.made(folder / "runs")
+        folder, runs_at = folders(values)
     except ParameterError as error:
         print(f"error: {error}", file=sys.stderr)
         return 2
