@@ -147,7 +147,8 @@ def test_reference_of_the_specimen():
         s = {"positions": p.positions, "radii": p.radii, "masses": mass, "inertias": 0.5 * mass * p.radii**2,
              "bonds": contacts(p.positions, p.radii)}
         steps.append([critical_time_step(**s, kn=20e9, kt=kt) for kt in (20e9, 4e9)])
-    assert np.mean(steps, axis=0) == pytest.approx([3.32e-7, 6.07e-7], rel=0.025)
+    equal, fifth = np.mean(steps, axis=0)
+    assert equal == pytest.approx(3.32e-7, rel=0.025) and fifth == pytest.approx(6.07e-7, rel=0.02)
 
 
 def test_time_integration_on_either_side():

@@ -81,9 +81,9 @@ def test_planes_through_a_block_cross_as_many_bonds():
 @pytest.mark.parametrize("change", [{"width": 0.05, "height": 0.025}, {"width": 0.1, "height": 0.05},
                                     {"height": 0.1, "grading_factor": 3, "fine_depth": 0.03}], ids=str)
 def test_area_does_not_depend_on_the_specimen(change):
-    """In the mean of five packings of 400 to 900 discs, which scatter by 2 %."""
-    areas = [Specimen(**{**SPECIMEN, **change, "seed": seed}).crack_area for seed in range(1, 6)]
-    assert np.mean(areas) == pytest.approx(1.433e-3, rel=0.025)
+    """In the mean of twelve packings of 250 to 1000 discs, which scatter by 2 %."""
+    areas = [Specimen(**{**SPECIMEN, **change, "seed": seed}).crack_area for seed in range(1, 13)]
+    assert np.mean(areas) == pytest.approx(1.433e-3, rel=0.015)
 
 
 def test_area_does_not_depend_on_a_notch_nor_on_what_is_cut_out():

@@ -78,7 +78,7 @@ def assert_wear_follows_own_heat(done, body, volume, *, mu):
     capacity = body.capacities(Material(density=DENSITY, specific_heat=values["tool_specific_heat"], conductivity=60.0),
                                "voronoi")
     heated = temperature > 650
-    assert heated.sum() >= 4 and temperature.max() > 700
+    assert heated.sum() > 5 and temperature.max() > 700
     assert np.array_equal(heated, volume > 0)
     scale = values["wear_coefficient"] * values["wear_acceleration"] * capacity / (mu * 0.85 * 0.5)
     exact = scale * integral(650.0, temperature)
@@ -153,9 +153,9 @@ def of_segments(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def of_segments_hot(tmp_path_factory):
-    return run("segments_thermal", tmp_path_factory.mktemp("hot") / "run", **{**OF_SEGMENTS, "wear_period": 10}, **HOT,
-               reshape="false", conduction="false", tool_specific_heat=3 * LIGHT, heat_sharing="equal",
-               heat_period=2e-6)
+    return run("segments_thermal", tmp_path_factory.mktemp("hot") / "run",
+               **{**OF_SEGMENTS, "wear_period": 10, "start_up": 1.6e-3}, **HOT, reshape="false", conduction="false",
+               tool_specific_heat=3 * LIGHT, heat_sharing="equal", heat_period=2e-6)
 
 
 def facet_body(done):

@@ -52,8 +52,11 @@ def test_conduction_changes_temperatures_alone(heated):
     """Nothing is removed and the hardness is constant: the same cut, step by step."""
     assert len({tuple(run.summary["balances"]["friction"].values()) for run in heated.values()}) == 1
     spread, kept = heated.values()
-    # A disc of the rock that touches the tool can be warmed by it.
+    # The hottest disc of the rock can be warmed by the tool that it touches; conduction warms more of them.
     assert min(value(run, "rock_temperature_max") for run in heated.values()) > 293.2
+    rocks = [last_snapshot(run.out)["temperature"][:-value(run, "tool_particles")] > 293.1500001
+             for run in (spread, kept)]
+    assert rocks[0][rocks[1]].all() and rocks[0].sum() > 1.2 * rocks[1].sum()
     assert 0.05 < value(spread, "tool_temperature_max") - 293.15 < 0.8 * (value(kept, "tool_temperature_max") - 293.15)
     tools = [last_snapshot(run.out)["temperature"][-value(run, "tool_particles"):] > 293.1501 for run in (spread, kept)]
     # It reaches particles that rub nowhere.

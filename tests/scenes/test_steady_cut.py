@@ -37,6 +37,15 @@ def never(request, tmp_path_factory):
     return run
 
 
+def way_of(run, chunk=2000):
+    """m of a cut of SMALL whose speed rises in steps of so many time steps, each that of the ramp in its middle."""
+    step, velocity, ramp = value(run, "time_step"), SMALL["velocity"], SMALL["ramp_length"]
+    count = round((SMALL["cut_length"] + ramp) / velocity / step)
+    begins = np.arange(0, count, chunk)
+    rising = (begins + 0.5 * chunk) * step / (2 * ramp / velocity)
+    return velocity * step * float(np.minimum(chunk, count - begins) @ np.clip(rising, 0.05, 1.0))
+
+
 def test_the_window_moves_and_the_balance_closes(never):
     energy = never.summary["balances"]["energy"]
     assert value(never, "tensile_cracks") > 0
@@ -44,8 +53,8 @@ def test_the_window_moves_and_the_balance_closes(never):
     part = 0.03 if "bond_law" in never.options else 0.02
     assert abs(energy["residual"]) < part * energy["tool_work"]
     assert (energy["rock_crushing"] > 0.05 * energy["tool_work"]) == ("bond_crushing" in never.options)
-    # To the next record, 0.1 mm of way, and the speed rises in steps.
-    assert history(never.out)["distance [m]"][-1] == pytest.approx(SMALL["cut_length"], abs=3e-4)
+    # The last record is up to 0.1 mm before the end.
+    assert 0 <= way_of(never) - history(never.out)["distance [m]"][-1] < 1.1e-4
     assert value(never, "window_passed") >= 4 * (SMALL["window_behind"] + SMALL["window_ahead"]) / 16
     if "control_radius" in never.options:
         # Absent particles have no density, reduced radii no less mass.

@@ -218,9 +218,8 @@ def test_every_cycle_starts_on_the_rock_that_the_start_up_left(same_tool):
 def test_a_worn_tool_gets_the_time_to_come_to_the_rock(tmp_path):
     """Else a tooth whose tip has gone back by more than a cycle's way would meet no rock any more."""
     seconds = 6e-4
-    values = dict(heat="false", wear_acceleration=1e6, snapshot_period=1, start_up=seconds, cycles=3,
-                  cycle_time=seconds,
-                  report="false")
+    values = dict(heat="false", wear_acceleration=1.5e6, snapshot_period=1, start_up=seconds, cycles=3,
+                  cycle_time=seconds, record_period=1e-6, report="false")
     run = tooth_cycles(tmp_path / "whole", **values)
     model = np.load(run.out / "model.npz")
     shots = [np.load(file) for file in sorted((run.out / "snapshots").glob("*.npz"))]
@@ -228,7 +227,7 @@ def test_a_worn_tool_gets_the_time_to_come_to_the_rock(tmp_path):
     low = model["tool_positions"][:, 1] - model["tool_radii"] < SMALL["depth_of_cut"]
     fronts = model["tool_positions"][:, 0] + model["tool_radii"]
     behind = fronts[low].max() - np.array([fronts[low & end["alive"]].max() for end in ends])
-    assert behind[2] >= behind[0] > 5e-4
+    assert behind[2] >= behind[0] > 1e-3
     times = np.array([float(end["time"]) for end in ends])
     assert np.diff(times) == pytest.approx(seconds + behind[:-1] / 4.0, abs=2 * value(run, "time_step"))
     # The way to the rock is no work: not in the time that wear stands for, nor in the rock that is cut.
@@ -236,7 +235,7 @@ def test_a_worn_tool_gets_the_time_to_come_to_the_rock(tmp_path):
     assert value(run, "working_time") == pytest.approx(working, abs=4 * value(run, "time_step"))
     tool_work = run.summary["balances"]["energy"]["tool_work"]
     assert value(run, "specific_energy") == pytest.approx(tool_work / (SMALL["depth_of_cut"] * 4.0 * working), rel=1e-3)
-    assert value(run, "mean_cutting_force") == pytest.approx(tool_work / (4.0 * working), rel=0.02)
+    assert value(run, "mean_cutting_force") == pytest.approx(tool_work / (4.0 * working), rel=2e-3)
     record = history(run.out)
     resting = np.diff(record["working_time [s]"], prepend=0) == 0
     coming = [np.ptp(record["time [s]"][(record["stage [-]"] == n) & resting]) for n in range(1, len(ends))]

@@ -107,13 +107,13 @@ def test_without_confinement_it_is_the_uniaxial_test(tmp_path):
 
 
 def test_sand_has_a_friction_angle(tmp_path):
-    """Bonds of almost no strength break while the pressure rises; the specimen then carries by friction alone."""
-    sand = confined(tmp_path / "out", confinement=5e6, Rn=1.0, Rt=1.0, mu=0.5, strain_max=0.03, speed=0.1)
+    """Bonds of almost no strength break while the pressure rises; the specimen then carries by friction alone. It
+    dilates: at 0.1 m/s the servo lags by 1 to 3 % of the pressure, at half of that by half."""
+    sand = confined(tmp_path / "out", confinement=5e6, Rn=1.0, Rt=1.0, mu=0.5, strain_max=0.03, speed=0.05)
     assert sand.code == 0, sand.stderr
     ratio = value(sand, "peak_stress") / 5e6
     assert 18 < math.degrees(math.asin((ratio - 1) / (ratio + 1))) < 45
-    # Six packings: 1 to 3 % too much.
-    assert value(sand, "confinement_held") == pytest.approx(5e6, rel=0.04)
+    assert value(sand, "confinement_held") == pytest.approx(5e6, rel=0.02)
 
 
 def test_a_specimen_that_never_fails_ends_and_says_so(tmp_path):
