@@ -3,17 +3,21 @@ import math
 
 import numpy as np
 
-from calibration.laboratory.loaded_specimen import SpecimenOutput, SpecimenTest, groups
+from calibration.laboratory.loaded_specimen import IN_SPACE, SpecimenOutput, SpecimenTest, groups
 from rockwear.kernels import fracture
 from rockwear.kernels.checks import require
 from rockwear.kernels.parameter import Parameter, above_zero, number
 
-GROUPS = groups(
+OWN = (
     Parameter("size", 0.08, "m", above_zero, "W, from the load line to the back; the specimen is 1.2 W x 1.25 W",
               "ASTM E399"),
-    Parameter("notch", 0.4, "", number(fracture.SHORTEST, 0.8), "length of the notch over W", "measured"),
-    without=("width", "height", "grip", "gauge", "platens"), speed=0.02, drop=0.15, strain_max=0.02,
-    record_strain=1e-5)
+    Parameter("notch", 0.4, "", number(fracture.SHORTEST, 0.8), "length of the notch over W", "measured"))
+BY_SIZE = "width", "height", "grip", "gauge", "platens"
+"""Parameters of other tests that follow from the size."""
+LOADED = dict(speed=0.02, drop=0.15, strain_max=0.02, record_strain=1e-5)
+GROUPS = groups(*OWN, without=BY_SIZE, **LOADED)
+GROUPS_IN_SPACE = groups(*OWN, without=BY_SIZE, rock=IN_SPACE, **LOADED, size=0.025, depth=0.01, radius=6e-4,
+                         bond_law="cohesive", kn=22e6, kt=5.6e6)
 LEAST_SIZE = 16
 """Over the largest radius."""
 PIN, PIN_PLACE, MOUTH = 0.125, 0.275, 0.25
@@ -26,7 +30,7 @@ class ToughnessOutput(SpecimenOutput):
 
     def log(self):
         found = super().log()
-        return {**found, "force": (self.scene.stress * self.scene.section, "N/m"),
+        return {**found, "force": (self.scene.stress * self.scene.rock.height, "N/m"),
                 "opening": (self.scene.opening(), "m")}
 
     def found(self, columns):
@@ -41,8 +45,9 @@ class ToughnessOutput(SpecimenOutput):
 
 
 class ToughnessTest(SpecimenTest):
-    """The compact tension specimen of ASTM E399 in the plane. values: {name: value} of all GROUPS.
+    """The compact tension specimen of ASTM E399. values: {name: value} of all GROUPS, or of GROUPS_IN_SPACE.
 
+    In space its thickness is the block's depth, its two faces are free, and forces are per metre of thickness, too.
     The notch runs along y from the front, y = 0; the pins part along x. A pin is a row of discs along the load line:
     prescribed in more than one row they would keep the arms from turning (that makes E 1.6 times and K 1.4 times too
     large). The opening is measured at the notch, so that what gives way at the pins does not count. The specimen is
@@ -56,7 +61,7 @@ class ToughnessTest(SpecimenTest):
     """Pa, largest stress so far, and m/Pa, opening over stress at that moment."""
 
     def __init__(self, values):
-        least = LEAST_SIZE * values["radius_max"]
+        least = LEAST_SIZE * values.get("radius", values.get("radius_max"))
         require(values["size"] >= least, "size", values["size"], f"at least {least:g}: so few discs give way elsewhere "
                 "than at the notch", "m")
         super().__init__({**values, "width": 1.2 * values["size"], "height": 1.25 * values["size"],
@@ -79,7 +84,7 @@ class ToughnessTest(SpecimenTest):
 
     def _place_gauge(self):
         """The discs along the notch near the load line."""
-        x, y = self.rock.positions.T
+        x, y = self.rock.positions.T[:2]
         off, reach = x - 0.6 * self.v.size, 2.5 * float(self.rock.radii.max())
         near = (abs(y - MOUTH * self.v.size) < reach) & (abs(off) < 1.6 * reach)
         self.lips = np.flatnonzero(near & (off < 0)), np.flatnonzero(near & (off > 0))

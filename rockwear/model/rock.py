@@ -273,16 +273,17 @@ class RockAssembly:
             self.fixed |= touches[face] & (y < below)
 
     def cut(self, start, end):
-        """Leave out the bonds across the segment from `start` to `end`, (2,) m: a notch of no width, in the plane.
+        """Leave out the bonds across the segment from `start` to `end`, (2,) m: a notch of no width, in space all
+        through the depth.
 
-        The discs within a largest diameter of it are of side 1, on the left of the way from start to end, or 2, and so
+        The particles within a largest diameter of it are of side 1, on the left of the way from start to end, or 2, and so
         are all that lose a bond. Those of different sides never touch unless they are bonded, so that overlaps of the
         packing across the notch push nothing apart.
         """
         along = np.subtract(end, start)
         length = np.linalg.norm(along)
         cosine, sine = along / length
-        x, y = np.array([[cosine, sine], [-sine, cosine]]) @ (self.positions - start).T
+        x, y = np.array([[cosine, sine], [-sine, cosine]]) @ (self.positions[:, :2] - start).T
         i, j = self.pairs.T
         part = np.divide(y[i], y[i] - y[j], out=np.full(len(i), -1.0), where=y[i] != y[j])
         at = x[i] + part * (x[j] - x[i])

@@ -10,11 +10,13 @@ from tests.running import (
     ROOT, arguments, assert_as_if_never_stopped, assert_refused, history, interrupt_script, refusals, run_script, value)
 
 DISC, NOTCHED = ROOT / "yade_scripts/brazilian.py", ROOT / "yade_scripts/toughness.py"
+BLOCK = ROOT / "yade_scripts/toughness_3d.py"
 LATTICE = ROOT / "tests/scenes/scripts/brazilian.py"
 ROCK = dict(radius_min=1e-3, radius_max=1.5e-3, kt=4e9, Rt=0.1e6)
 SMALL = {DISC: dict(ROCK, diameter=0.03, drop=0.3, report="false"),
-         NOTCHED: dict(ROCK, size=0.025, speed=0.05, report="false")}
-"""Some 130 and 180 discs."""
+         NOTCHED: dict(ROCK, size=0.025, speed=0.05, report="false"),
+         BLOCK: dict(radius=1.5e-3, kn=55e6, kt=14e6, size=0.03, speed=0.05, report="false")}
+"""Some 130 and 180 discs, 610 spheres."""
 
 
 def run(script, out, *flags, **values):
@@ -29,6 +31,11 @@ def pressed(tmp_path_factory):
 @pytest.fixture(scope="module")
 def opened(tmp_path_factory):
     return run(NOTCHED, tmp_path_factory.mktemp("opened") / "out", report="true")
+
+
+@pytest.fixture(scope="module")
+def opened_block(tmp_path_factory):
+    return run(BLOCK, tmp_path_factory.mktemp("block") / "out", report="true")
 
 
 def test_stresses_at_the_centre_of_a_lattice_are_exact(tmp_path):
@@ -69,7 +76,18 @@ def test_a_notch_drives_a_crack_to_the_back(opened):
         value(opened, "peak_force") * fracture.intensity_factor(0.4) / math.sqrt(0.025), rel=1e-9)
 
 
-@pytest.mark.parametrize("name", ["pressed", "opened"])
+def test_a_notch_drives_a_crack_through_a_block(opened_block):
+    """Bonds take 30 J/m2 of its crack, which winds; forces and works are per metre of thickness."""
+    assert opened_block.code == 0, opened_block.stderr
+    assert value(opened_block, "failed")
+    assert value(opened_block, "tensile_cracks") > 5 * value(opened_block, "shear_cracks")
+    assert value(opened_block, "crack_length") > 0.7 * 0.03
+    assert 1.0 < value(opened_block, "fracture_energy") / 30 < 4.0
+    broken = opened_block.summary["balances"]["energy"]["bond_breaking"] / 0.01
+    assert 1.0 < broken / (30 * (value(opened_block, "crack_length") - 0.4 * 0.03)) < 4.0
+
+
+@pytest.mark.parametrize("name", ["pressed", "opened", "opened_block"])
 def test_the_energy_balance_closes(request, name):
     done = request.getfixturevalue(name)
     balance = done.summary["balances"]["energy"]
@@ -78,13 +96,16 @@ def test_the_energy_balance_closes(request, name):
     assert not (done.out / "figures/stress_strain.png").exists()
 
 
-def test_the_work_at_the_notch_is_what_the_specimen_dissipates(opened):
+@pytest.mark.parametrize("name, thickness", [("opened", 1.0), ("opened_block", 0.01)])
+def test_the_work_at_the_notch_is_what_the_specimen_dissipates(request, name, thickness):
     """Force over opening misses what gives way at the pins, and that is elastic."""
-    columns = {name.split(" [")[0]: column for name, column in history(opened.out).items()}
-    found = fracture.resistance_curve(force=columns["force"], opening=columns["opening"], width=0.025, notch=0.4)
-    balance = opened.summary["balances"]["energy"]
+    done = request.getfixturevalue(name)
+    columns = {name.split(" [")[0]: column for name, column in history(done.out).items()}
+    found = fracture.resistance_curve(force=columns["force"], opening=columns["opening"],
+                                      width=done.summary["parameters"]["size"], notch=0.4)
+    balance = done.summary["balances"]["energy"]
     spent = balance["bond_breaking"] + balance["rock_friction"] + balance["numerical_damping"] + balance["kinetic"]
-    assert found["dissipated"][-1] == pytest.approx(spent, rel=0.1)
+    assert found["dissipated"][-1] == pytest.approx(spent / thickness, rel=0.1)
 
 
 def test_softening_bonds_make_the_rock_tougher(opened, tmp_path):
@@ -94,7 +115,7 @@ def test_softening_bonds_make_the_rock_tougher(opened, tmp_path):
     assert value(softer, "fracture_energy") > 1.5 * value(opened, "fracture_energy")
 
 
-@pytest.mark.parametrize("script, name", [(DISC, "pressed"), (NOTCHED, "opened")])
+@pytest.mark.parametrize("script, name", [(DISC, "pressed"), (NOTCHED, "opened"), (BLOCK, "opened_block")])
 def test_stopped_and_resumed_equals_never_stopped(request, tmp_path, script, name):
     out, options = tmp_path / "out", dict(checkpoint_interval=0.01)
     stopped = interrupt_script(script, out, signal.SIGTERM, 2, **{**SMALL[script], **options})
@@ -112,7 +133,10 @@ REFUSED = {
               ({"notch": 0.9}, "notch = 0.9: must be at most 0.8"),
               ({"size": -1}, "size = -1 m: must be greater than 0"),
               ({"size": 0.01}, "size = 0.01 m: must be at least 0.024"),
-              ({"platens": "rough"}, "platens")]}
+              ({"platens": "rough"}, "platens")],
+    BLOCK: [({"size": 0.02}, "size = 0.02 m: must be at least 0.024"),
+            ({"depth": 0}, "depth = 0 m: must be greater than 0"),
+            ({"radius_max": 1e-3}, "radius_max")]}
 
 
 @pytest.mark.parametrize("script", REFUSED)
