@@ -3,12 +3,14 @@
     python3 -m calibration.fitting.in_space --rock NAME|FILE --out DIR [--radius 6e-4] [--packings 3] [--jobs 2]
 
 Blocks of some 1440 spheres are compressed and pulled until E, nu, UCS and tensile strength are the targets of the rock
-file; then other packings are tested. Fitted are the stiffnesses of the bonds and their two strengths; friction,
-fracture energies and crushing are those of the plane, and there are no grains. Where slip does not damage the bonds of
-the plane, UCS over tensile strength stays near six without grains; --bond_shear_energy 1000 doubles it. nu is that of a
-pulled block: in a compressed one the first cracks open along the load. The toughness in space is not measured. Writes
-DIR/rock.json, the rock with both parts, and DIR/in_space.md. What was interrupted goes on where it was when it is
-started again with the same words.
+file; then other packings are tested, and the toughness of three of them is measured, where the rock has a target for
+it. Fitted are the stiffnesses of the bonds and their two strengths; friction and crushing are those of the plane, and
+the fracture energies, too, unless they are given. A toughness that is off asks for a bond_fracture_energy as many times
+as large as the square of what is missing. Grains give UCS over tensile strength, as in the plane: it is six without
+them, sixteen with an edge of 1.6 radii, fifty with one of 2. --bond_shear_energy 1000 doubles it, too, but makes a
+rock twice as tough as a sandstone. nu is that of a pulled block: in a compressed one the first cracks open along the
+load. Writes DIR/rock.json, the rock with both parts, and DIR/in_space.md. What was interrupted goes on where it was
+when it is started again with the same words.
 """
 import hashlib
 import json
@@ -30,10 +32,13 @@ from rockwear.kernels.checks import ParameterError, require
 from rockwear.kernels.parameter import Group, Parameter, above_zero, file, integer, number, text
 from rockwear.run import parameters
 
-SCRIPT = "yade_scripts/uniaxial_3d.py"
+SCRIPT, NOTCHED = "yade_scripts/uniaxial_3d.py", "yade_scripts/toughness_3d.py"
 LAWS = "cohesive", "coulomb"
+ENERGIES = "bond_shear_energy", "bond_fracture_energy"
 SIDES = {"width": 100 / 3, "height": 50 / 3, "depth": 50 / 3}
 """Of a block over the radius; it is loaded along its width."""
+SIZE, THICKNESS, OPENING = 28, 11, dict(speed=0.01, record_strain=2e-6, strain_max=0.01)
+"""Of a notched block over the radius; it is opened so slowly that waves do not count."""
 POROSITY, GAP = 0.35, 0.1
 """Of the packings; bonding_gap over the radius."""
 OF_PLANE = ("kn", "kt", "bond_tension", "bond_cohesion", "bond_tension_power", "bond_cohesion_power", "bonding_gap",
@@ -41,21 +46,25 @@ OF_PLANE = ("kn", "kt", "bond_tension", "bond_cohesion", "bond_tension_power", "
 """Parameters that do not carry over."""
 UNKNOWNS = "kn over E d", "kt over kn", "bond_tension over the tensile strength", "bond_cohesion over UCS"
 """Their logarithms are what is varied. d: diameter of the spheres."""
-FIRST, SPAN = np.log([0.99, 0.27, 0.67, 0.52]), math.log(10)
-"""crushing_sandstone has these; how far others are looked for, a factor of ten."""
+FIRST, WITHOUT_GRAINS, SPAN = np.log([1.05, 0.27, 1.08, 0.62]), np.log([0.99, 0.27, 0.67, 0.52]), math.log(10)
+"""medium_sandstone and crushing_sandstone have these; how far others are looked for, a factor of ten."""
 SLOPES = {"E": ((1, 0), (0.2, 0.1), (0, 0.05), (0, 0.05)), "nu": ((0, 0.02), (-0.12, 0.05), (0, 0.02), (0, 0.02)),
           "ucs": ((0, 0.2), (0, 0.2), (0.1, 0.3), (0.6, 0.3)), "tension": ((0, 0.2), (0, 0.2), (0.8, 0.3), (0.1, 0.2))}
 """{kind of observable: (slope over each unknown, standard deviation)}; a deviation of 0: exact."""
 SEARCHES, ENOUGH = 7, 0.5
 """Sets of tests at most, before the check; part of what is allowed that they may miss."""
-CHECKED, CHECKS = 20, 5
-"""Seeds of the check lie above this, and above those of the search; its packings."""
+CHECKED, CHECKS, NOTCHES = 20, 5, 3
+"""Seeds of the check lie above this, and above those of the search; its packings, and those whose toughness is
+measured."""
 GROUPS = [
     Group("rock", (
         Parameter("rock", "", "", file, "rock with a part for the plane, a name of the library or a file", "yours"),
         Parameter("radius", 6e-4, "m", above_zero, "radius of the spheres"),
         Parameter("bond_shear_energy", 0.0, "J/m2", number(0), "work to break a bond in shear without normal force, "
-                  "over its area, for want of grains that interlock; 0: that of the plane; of cohesive bonds alone"))),
+                  "over its area, for want of grains that interlock; 0: that of the plane; of cohesive bonds alone"),
+        Parameter("bond_fracture_energy", 0.0, "J/m2", number(0), "work to break a bond in tension over its area; 0: "
+                  "that of the plane; of cohesive bonds alone"),
+        Parameter("grains", 1.6, "", number(0), "mean edge of grains over the radius of the spheres; 0: none"))),
     Group("search", (Parameter("packings", 3, "", integer(2), "packings of each set of tests"),
                      Parameter("jobs", 2, "", integer(1), "tests at a time"))),
     Group("output", (Parameter("out", "", "", text, "folder of rock.json, in_space.md and all runs"),))]
@@ -89,30 +98,39 @@ class BlockLaboratory:
 
     def measure(self, x, seeds):
         """{Observable: (packings,) values}. Raises RunFailed."""
+        box = {side: float(f"{length * self.radius:.4g}") for side, length in SIDES.items()}
+        strains = {test: strength(test, self.rock.targets) / self.rock.targets["youngs_modulus"]
+                   for test in ("compression", "tension")}
+        found = self._run(x, seeds, SCRIPT, {test: dict(test=test, drop=DROP, **box, **loading(test, strain))
+                                             for test, strain in strains.items()})
+        return {o: np.array([found[o.test, seed].result(o.result) for seed in seeds]) for o in self.observables}
+
+    def toughness(self, x, seeds):
+        """(packings,) Pa sqrt(m): fracture toughness. Raises RunFailed."""
+        found = self._run(x, seeds, NOTCHED, {"toughness": dict(
+            OPENING, size=float(f"{SIZE * self.radius:.4g}"), depth=float(f"{THICKNESS * self.radius:.4g}"))})
+        return np.array([found["toughness", seed].result("fracture_toughness") for seed in seeds])
+
+    def _run(self, x, seeds, script, tests):
+        """{(test, seed): RunFolder} of {test: its parameters}."""
         given = self.parameters(x)
         digest = hashlib.sha256(json.dumps([given, self.radius], sort_keys=True).encode()).hexdigest()[:12]
-        box = {side: float(f"{length * self.radius:.4g}") for side, length in SIDES.items()}
-        jobs = {}
-        for seed in seeds:
-            for test in ("compression", "tension"):
-                strain = strength(test, self.rock.targets) / self.rock.targets["youngs_modulus"]
-                jobs[test, seed] = self.runs.start(
-                    f"{digest}/{test}-{seed}", SCRIPT, test=test, radius=self.radius, seed=seed, drop=DROP, **box,
-                    **loading(test, strain), **given, **COMMON)
+        jobs = {(test, seed): self.runs.start(f"{digest}/{test}-{seed}", script, radius=self.radius, seed=seed,
+                                              **values, **given, **COMMON)
+                for seed in seeds for test, values in tests.items()}
         for _ in as_they_end(jobs.values()):
             pass
-        return {o: np.array([jobs[o.test, seed].result().result(o.result) for seed in seeds])
-                for o in self.observables}
+        return {key: job.result() for key, job in jobs.items()}
 
 
-def search(measure, of):
+def search(measure, of, first):
     """surrogate.Solution: logarithms (4,) of UNKNOWNS at which the observables `of` are their targets. measure: (4,) ->
-    {Observable: (packings,)}."""
+    {Observable: (packings,)}; first: (4,), where to begin."""
     problem = Problem(target=np.array([float(o.scaled(o.target)) for o in of]),
-                      tolerance=np.array([o.tolerance for o in of]), low=FIRST - SPAN, high=FIRST + SPAN)
+                      tolerance=np.array([o.tolerance for o in of]), low=first - SPAN, high=first + SPAN)
     slopes = np.array([SLOPES[o.kind] for o in of], float)
     return solve(lambda x: statistics(measure(x), COMMON_SEEDS), Surrogate(slopes[..., 0], slopes[..., 1]), problem,
-                 start=FIRST, most=SEARCHES, enough=ENOUGH)
+                 start=first, most=SEARCHES, enough=ENOUGH)
 
 
 def with_space(data, given, *, radius, verdicts):
@@ -130,8 +148,8 @@ def page(name, given, solution, verdicts, *, radius):
     lines = [f"# {name} in space", "",
              f"Spheres of {1e3 * radius:g} mm in radius have {len(verdicts) - len(missed)} of the {len(verdicts)} "
              f"properties aimed at, on {CHECKS} packings that the search has not seen"
-             f"{f'. **Not reached: {words}.**' if missed else '.'} Their toughness is not measured, and they have no "
-             "grains.", ""]
+             f"{f'. **Not reached: {words}.**' if missed else '.'} Toughness, where the rock has a target for it, is "
+             f"measured on {NOTCHES} of them, and not fitted; it follows bond_fracture_energy.", ""]
     lines += generated.table(
         ["", "test", "target", "mean ± standard deviation", "standard error", "difference", "allowed", "met"],
         [[o.name, o.test, shown(o, o.target), f"{shown(o, one.mean)} ± {shown(o, one.deviation)}", shown(o, one.error),
@@ -140,7 +158,7 @@ def page(name, given, solution, verdicts, *, radius):
     lines += ["## Micro-parameters", "", *generated.table(["parameter", "value"], list(given.items())),
               "## Search", "", "Means of the same packings, the nearest last:", ""]
     return lines + generated.table(
-        [*UNKNOWNS, *(o.name for o in verdicts)],
+        [*UNKNOWNS, *(o.name for o in verdicts if o.test != "toughness")],
         [[*(f"{value:.3g}" for value in np.exp(x)),
           *(shown(o, float(value if o.kind == "nu" else np.exp(value))) for o, value in zip(verdicts, y))]
          for x, y, _ in solution.steps])
@@ -149,9 +167,10 @@ def page(name, given, solution, verdicts, *, radius):
 def rock_of(values):
     """(the rock file as JSON has it, its RockFile). Raises ParameterError."""
     data, rock = plane_rock(values["rock"])
-    law, energy = rock.parts["plane"].parameters["bond_law"], values["bond_shear_energy"]
+    law = rock.parts["plane"].parameters["bond_law"]
     require(law in LAWS, "rock", f"{values['rock']}, bond_law = {law}", f"a rock of {' or '.join(LAWS)} bonds")
-    require(not energy or law == "cohesive", "bond_shear_energy", energy, f"left out with bond_law = {law}", "J/m2")
+    for name in ENERGIES:
+        require(not values[name] or law == "cohesive", name, values[name], f"left out with bond_law = {law}", "J/m2")
     for name in ("youngs_modulus", "poissons_ratio", "ucs", "tensile_strength"):
         require(name in rock.targets, "rock", values["rock"], f"a rock with a target for {name}")
     return data, rock
@@ -159,7 +178,18 @@ def rock_of(values):
 
 def given_of(values):
     """{parameter: value} in place of the plane's."""
-    return {name: values[name] for name in ("bond_shear_energy",) if values[name]}
+    edge = float(f"{values['grains'] * values['radius']:.4g}")
+    return {**{name: values[name] for name in ENERGIES if values[name]}, **({"grain_edge": edge} if edge else {})}
+
+
+def checked(laboratory, x, seeds):
+    """{Observable: Verdict} on the packings `seeds`; the toughness last, where the rock has a target for it."""
+    found = laboratory.measure(x, seeds)
+    target = laboratory.rock.targets.get("fracture_toughness")
+    if target:
+        found[Observable("fracture_toughness", "toughness", "fracture_toughness", target, 0.1, "toughness",
+                         "Pa sqrt(m)")] = laboratory.toughness(x, seeds[:NOTCHES])
+    return {o: verdict(o, of) for o, of in found.items()}
 
 
 def main(words):
@@ -178,9 +208,10 @@ def main(words):
     try:
         with Runs(runs_at, at_once=values["jobs"], keep=True) as runs:
             laboratory = BlockLaboratory(runs=runs, rock=rock, radius=radius, given=given_of(values))
-            solution = search(lambda x: laboratory.measure(x, seeds), laboratory.observables)
+            solution = search(lambda x: laboratory.measure(x, seeds), laboratory.observables,
+                              FIRST if values["grains"] else WITHOUT_GRAINS)
             found = laboratory.parameters(solution.x)
-            verdicts = {o: verdict(o, of) for o, of in laboratory.measure(solution.x, unseen).items()}
+            verdicts = checked(laboratory, solution.x, unseen)
     except (RunFailed, OSError) as error:
         print(f"error: {error}", file=sys.stderr)
         return 1

@@ -26,25 +26,34 @@ def made_up(laboratory, x, seeds):
     return found
 
 
+def made_up_toughness(laboratory, x, seeds):
+    """As much off the target as the fracture energy tells."""
+    energy = laboratory.parameters(x)["bond_fracture_energy"]
+    return np.array([0.6e6 * np.sqrt(energy / 16) * (1 + 0.01 * (seed % 3 - 1)) for seed in seeds])
+
+
 @pytest.fixture
 def run(tmp_path, monkeypatch, capsys):
     """run(word, ...) -> (exit code, stdout, stderr) of the command with the made-up laboratory."""
     monkeypatch.setattr(BlockLaboratory, "measure", made_up)
+    monkeypatch.setattr(BlockLaboratory, "toughness", made_up_toughness)
 
     def of(*words):
         return in_space.main([*map(str, words), "--out", str(tmp_path / "out")]), *capsys.readouterr()
     return of
 
 
-@pytest.mark.parametrize("name", ["medium_sandstone", "p_sandstone", "hawkesbury"])
-def test_all_targets_are_met_and_the_rock_can_be_read(run, tmp_path, name):
+@pytest.mark.parametrize("name, count", [("medium_sandstone", 5), ("p_sandstone", 4), ("hawkesbury", 4)])
+def test_all_targets_are_met_and_the_rock_can_be_read(run, tmp_path, name, count):
     code, said, wrong = run("--rock", name, "--radius", 9e-4)
-    assert code == 0 and not wrong and said.endswith("out/rock.json\n") and "have 4 of the 4 properties" in said
+    assert code == 0 and not wrong and said.endswith("out/rock.json\n")
+    page = (tmp_path / "out" / "in_space.md").read_text(encoding="utf-8")
+    assert f"have {count} of the {count} properties" in page
     before, after = (rock_file.read(path, OF_ROCK) for path in
                      (rock_file.find(name), tmp_path / "out" / "rock.json"))
     assert after.parts["plane"] == before.parts["plane"] and after.targets == before.targets
     space = after.parts["space"]
-    assert space.resolution == {"radius": 9e-4} and "grain_edge" not in space.parameters
+    assert space.resolution == {"radius": 9e-4} and space.parameters["grain_edge"] == 1.6 * 9e-4
     assert space.parameters["mu"] == before.parts["plane"].parameters["mu"]
     for observable, allowed in (("youngs_modulus", 0.05), ("ucs", 0.05), ("tensile_strength", 0.1)):
         assert space.measured[observable]["mean"] == pytest.approx(before.targets[observable], rel=allowed)
@@ -52,10 +61,17 @@ def test_all_targets_are_met_and_the_rock_can_be_read(run, tmp_path, name):
     assert space.measured["ucs"]["packings"] == in_space.CHECKS
 
 
-def test_the_energy_of_shear_can_be_given(run, tmp_path):
-    run("--rock", "medium_sandstone", "--bond_shear_energy", 1000)
-    space = rock_file.read(tmp_path / "out" / "rock.json", OF_ROCK).parts["space"].parameters
-    assert space["bond_shear_energy"] == 1000 and space["bond_fracture_energy"] == 16
+def test_energies_can_be_given_and_grains_left_out(run, tmp_path):
+    """A toughness that is off is said, and not fitted."""
+    code, *_ = run("--rock", "medium_sandstone", "--bond_shear_energy", 1000, "--bond_fracture_energy", 64,
+                   "--grains", 0)
+    space = rock_file.read(tmp_path / "out" / "rock.json", OF_ROCK).parts["space"]
+    assert space.parameters["bond_shear_energy"] == 1000 and space.parameters["bond_fracture_energy"] == 64
+    assert "grain_edge" not in space.parameters
+    page = (tmp_path / "out" / "in_space.md").read_text(encoding="utf-8")
+    assert code == 3 and "fracture_toughness is 1.2 MPa sqrt(m) ±" in page
+    assert space.measured["fracture_toughness"]["mean"] == pytest.approx(1.2e6)
+    assert space.measured["fracture_toughness"]["packings"] == in_space.NOTCHES
 
 
 def test_what_is_not_reached_is_said(run, monkeypatch, tmp_path):
@@ -116,11 +132,14 @@ def test_blocks_grow_with_their_spheres_and_their_parameters_are_the_scripts(tmp
     rock = rock_file.read(rock_file.find("crushing_sandstone"), OF_ROCK)
     for radius in (3e-4, 6e-4):
         laboratory = BlockLaboratory(runs=Kept(), rock=rock, radius=radius, given={})
-        laboratory.measure(in_space.FIRST, [7])
+        laboratory.measure(in_space.WITHOUT_GRAINS, [7])
+        assert list(laboratory.toughness(in_space.WITHOUT_GRAINS, [7])) == [1.0]
     fine, coarse = (started["tension-7", radius] for radius in (3e-4, 6e-4))
     assert all(coarse[name] == pytest.approx(2 * fine[name], rel=1e-3)
                for name in ("width", "height", "depth", "kn", "kt"))
     assert coarse["speed"] == fine["speed"] and coarse["bond_tension"] == fine["bond_tension"]
+    notched = started["toughness-7", 6e-4]
+    assert notched["size"] == pytest.approx(2 * started["toughness-7", 3e-4]["size"]) and notched["kn"] == coarse["kn"]
     # The library's own part for space, but for what its fit had rounded.
     own = rock.parts["space"].parameters
     assert coarse["bond_crushing"] == own["bond_crushing"] and coarse["bonding_gap"] == own["bonding_gap"]
