@@ -9,6 +9,7 @@ as many as a dask scheduler's workers take; a folder a run; finished runs are no
 campaign resumes. --read starts no run and evaluates those that exist. Writes into DIR groove.md, groove.png and
 provenance.json.
 """
+import itertools
 import math
 import sys
 
@@ -23,7 +24,7 @@ from rockwear.kernels.fragments import pieces
 from rockwear.report import palette, plots
 from rockwear.report.folder import RunFolder
 
-SCRIPT, COMPRESSION = "yade_scripts/cutting_3d_triangles.py", "yade_scripts/uniaxial_3d.py"
+SCRIPT = "yade_scripts/cutting_3d_triangles.py"
 BREADTHS = {"6.5": 6.5e-3, "13": 13e-3, "26": 26e-3}
 """{mm: m}. A laboratory's chisel is 13 mm wide."""
 RADII = {"0.45": 4.5e-4, "0.6": 6e-4, "0.9": 9e-4}
@@ -43,18 +44,28 @@ CUT = dict(rock=ROCK, scale_factor=1.0, width=0.045, height=0.015, gravity=0.0,
 """Six depths of way; else as in campaigns.steady_cut."""
 SLOWER = {"13, 4 m/s": 4.0, "13, 2 m/s": 2.0}
 """{case: m/s}."""
+ROCKS = {"90 and 1000 J/m2": {},
+         "30 and 1000 J/m2": dict(bond_fracture_energy=30.0),
+         "30 and 300 J/m2": dict(bond_fracture_energy=30.0, bond_shear_energy=300.0),
+         "10 and 300 J/m2": dict(bond_fracture_energy=10.0, bond_shear_energy=300.0)}
+"""{rock: parameters} that are less tough, the first as it is: fracture energies of its bonds in tension and shear."""
+TOUGHER, *BRITTLER = ROCKS
 OTHERS = {
     "13, rake -15": dict(rake=-15.0), "13, rake 15": dict(rake=15.0),
     "13, flat 1": dict(wear_flat=1e-3), "13, flat 2": dict(wear_flat=2e-3),
-    "13, 30 J/m2": dict(bond_fracture_energy=30.0),
     "13, 10 deep": dict(depth_of_cut=0.01, width=0.075, height=0.03, depth=0.053, tooth_height=0.024,
-                        tooth_width=0.016, cut_time=7.5e-3)}
-"""{case: parameters} of tools 13 mm wide that differ from those of CUT in one thing: degrees, mm of wear flat, fracture
-energy of the bonds in tension, mm of depth with six of them of way and two beside."""
+                        tooth_width=0.016, cut_time=7.5e-3),
+    **{f"13, {rock}": ROCKS[rock] for rock in BRITTLER}}
+"""{case: parameters} of tools 13 mm wide that differ from those of CUT in one thing: degrees, mm of wear flat, mm of
+depth with six of them of way and two beside, rock."""
 CASES = {"0.45": ["13", "13, flat 2"], "0.6": BREADTHS, "0.9": [*BREADTHS, *SLOWER, *OTHERS]}
 """{radius: cases}."""
-BOX, SPEED = dict(width=0.02, height=0.01, depth=0.01), 0.1
-"""Of the laboratory for spheres of 0.6 mm, m, loaded along its length; m/s of each platen."""
+LABORATORY = {"compression": ("yade_scripts/uniaxial_3d.py", "peak_stress", dict(width=0.02, height=0.01, depth=0.01),
+                              dict(test="compression", speed=0.1)),
+              "toughness": ("yade_scripts/toughness_3d.py", "fracture_toughness", dict(size=0.0168, depth=0.0066), {})}
+"""{test: (script, result, m of the specimen for spheres of 0.6 mm, other parameters)}."""
+TOUGH = "0.9"
+"""Radius at which the rocks stand beside one another."""
 QUANTITIES = {"mean force, kN": "force", "over depth and breadth, MJ/m³": "energy", "peak / mean": "peaks",
               "thrust / cutting": "thrust", "friction, kN": "friction", "groove over tool": "section",
               "overbreak / depth": "overbreak"}
@@ -67,19 +78,31 @@ BASE = "13"
 
 
 def plan(radii):
-    """{(radius, case, seed): (folder, script, parameters)}, one packing of all first. A case is one of CASES; "": the
-    laboratory."""
+    """{(radius, case, seed): (folder, script, parameters)}, one packing of all first. A case is one of CASES, or (test,
+    rock) of LABORATORY and ROCKS."""
     found = {}
     for seed in SEEDS:
         for name in radii:
-            size, rock = RADII[name] / RADII["0.6"], dict(rock=ROCK, radius=RADII[name], seed=seed)
-            box = {side: float(f"{size * length:.6g}") for side, length in BOX.items()}
-            found[name, "", seed] = (f"lab/{name}-{seed}", COMPRESSION,
-                                     dict(rock, **box, test="compression", speed=SPEED, report="false"))
+            rock = dict(rock=ROCK, radius=RADII[name], seed=seed)
             for case in CASES[name]:
                 place = f"cut/{name}-{file_name(case)}-{seed}"
                 found[name, case, seed] = place, SCRIPT, {**CUT, **rock, **changed(case)}
+            for test, of in (itertools.product(LABORATORY, ROCKS) if name == TOUGH else [("compression", TOUGHER)]):
+                place = f"lab/{name}-{test}-{file_name(of)}-{seed}"
+                found[name, (test, of), seed] = place, *specimen(test, {**rock, **ROCKS[of], "report": "false"})
     return found
+
+
+def specimen(test, rock):
+    """(script, parameters) of a test of LABORATORY on a rock of these parameters."""
+    script, _, sides, more = LABORATORY[test]
+    size = rock["radius"] / RADII["0.6"]
+    return script, {**rock, **{side: float(f"{size * length:.6g}") for side, length in sides.items()}, **more}
+
+
+def named(radius, case, seed):
+    """A run of the plan in words."""
+    return f"spheres of {radius} mm, {case if isinstance(case, str) else ' of '.join(case)}, packing {seed}"
 
 
 def changed(case):
@@ -140,17 +163,31 @@ def off(run):
 
 
 def measured(folder):
-    """({radius: {case: {seed: {quantity: Measured}}}}, {radius: [UCS, Pa]}) of the runs that exist."""
-    cuts, ucs = {}, {}
+    """({radius: {case: {seed: {quantity: Measured}}}}, {(radius, test, rock): [Pa, or Pa sqrt(m)]}) of the runs that
+    exist."""
+    cuts, strengths = {}, {}
     for (radius, case, seed), (place, _, _) in plan(RADII).items():
         if not (folder / place / "summary.json").exists():
             continue
         run = RunFolder(folder / place)
-        if case:
+        if isinstance(case, str):
             cuts.setdefault(radius, {}).setdefault(case, {})[seed] = of_run(run)
         else:
-            ucs.setdefault(radius, []).append(run.result("peak_stress"))
-    return cuts, ucs
+            strengths.setdefault((radius, *case), []).append(run.result(LABORATORY[case[0]][1]))
+    return cuts, strengths
+
+
+def rocks_table(found, strengths):
+    """Rows of the table of ROCKS: toughness, UCS and the force of the tool of BASE. found: {case: {seed: {quantity:
+    Measured}}}."""
+    for rock in ROCKS:
+        cut = found.get(BASE if rock == TOUGHER else f"{BASE}, {rock}", {})
+        ucs, toughness = (np.array(strengths.get((TOUGH, test, rock), [])) for test in LABORATORY)
+        if len(ucs) and len(toughness) and cut:
+            force = over_packings([one["force"] for one in cut.values()])
+            energy = over_packings([one["energy"] for one in cut.values()])
+            yield [rock, generated.mean_cell(1e-6 * toughness), generated.mean_cell(1e-6 * ucs), shown(force),
+                   shown(scaled(energy, 100 / (1e-6 * ucs.mean()))), f"{len(toughness)}, {len(ucs)}, {len(cut)}"]
 
 
 def sides(found):
@@ -225,19 +262,25 @@ def section(axes, run):
 
 def write(folder):
     """Tables and figure of the runs that exist. -> the tables, in Markdown."""
-    cuts, ucs = measured(folder)
+    cuts, strengths = measured(folder)
     lines = ["Mean ± standard error: of the packings where there are three, else of the cuts' own records, from "
              f"{BEGIN} depth of cut on. Groove over tool: section of the rock that came off over depth times breadth. "
              "Energy missed: residual of the balance over the tool's work, of the worst packing.", ""]
     for radius, found in cuts.items():
         lines += [f"## Spheres of {radius} mm", ""]
-        if radius in ucs:
-            lines += [f"UCS {generated.mean_cell(1e-6 * np.array(ucs[radius]))} MPa ({len(ucs[radius])} packings).", ""]
+        ucs = strengths.get((radius, "compression", TOUGHER))
+        if ucs:
+            lines += [f"UCS {generated.mean_cell(1e-6 * np.array(ucs))} MPa ({len(ucs)} packings).", ""]
         lines += generated.table(["breadth, mm", "packings", *QUANTITIES, "energy missed"], rows(found))
         beside = list(changes(found))
         if beside:
             lines += [f"Beside a tool {BASE} mm wide, in packings in common:", "",
                       *generated.table(["case", "packings", *CHANGES], beside)]
+        rocks = list(rocks_table(found, strengths)) if radius == TOUGH else []
+        if rocks:
+            lines += ["Rocks that differ in the fracture energies of their bonds, in tension and in shear:", "",
+                      *generated.table(["rock", "K_IC, MPa√m", "UCS, MPa", "mean force, kN", "over depth and breadth, "
+                                        "% of the UCS", "packings of each"], rocks)]
         a_slice, edges = sides(found)
         if math.isfinite(a_slice.value):
             lines += [f"The mean force is {shown(edges)} kN at the sides and {shown(a_slice)} kN per metre of breadth "
@@ -258,8 +301,7 @@ def main(folder, words, **where):
         with Runs(folder, keep=True, **where) as runs:
             jobs = {key: runs.start(place, script, **values)
                     for key, (place, script, values) in plan(words or RADII).items()}
-            failed = wait_for(jobs, lambda key, run: "spheres of {} mm, breadth in mm {}, packing {}".format(*key)
-                              if key[1] else "spheres of {0} mm, compression, packing {2}".format(*key))
+            failed = wait_for(jobs, lambda key, run: named(*key))
     print(write(folder))
     return failed
 

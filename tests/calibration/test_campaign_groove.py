@@ -15,14 +15,14 @@ SPACING = 1e-3
 def made_up(folder, seed_factor=lambda seed: 1.0):
     """Runs of the whole plan: forces of a slice and of the sides, a groove 2 mm wider than the tool on either side and
     1 mm deeper than its path, between 5 mm and the end of the way."""
-    for (_, breadth, seed), (place, _, values) in groove.plan(["0.9"]).items():
+    for (_, case, seed), (place, _, values) in groove.plan(["0.9"]).items():
         run = folder / place
         (run / "snapshots").mkdir(parents=True)
         (run / "summary.json").write_text(json.dumps({
-            "results": {"peak_stress": {"value": 5e7 + 1e6 * seed}},
+            "results": {"peak_stress": {"value": 5e7 + 1e6 * seed}, "fracture_toughness": {"value": 1e6 + 1e5 * seed}},
             "parameters": values, "versions": {"rockwear": "0"},
             "balances": {"energy": {"tool_work": 10.0, "residual": -0.05}}}), encoding="utf-8")
-        if not breadth:
+        if not isinstance(case, str):
             continue
         force = (SIDES + SLICE * values["breadth"]) * seed_factor(seed)
         time = np.linspace(0.0, values["cut_time"], 400)
@@ -97,6 +97,19 @@ def test_other_tools_differ_from_the_base_by_what_they_are_for():
     assert deep["depth"] == pytest.approx(deep["breadth"] + 4 * deep["depth_of_cut"])
 
 
+def test_less_tough_rocks_are_cut_and_tested():
+    """Those of the laboratory and of the cuts are the same; specimens grow with the spheres."""
+    plan = groove.plan(groove.RADII)
+    for rock, given in groove.ROCKS.items():
+        runs = [plan[groove.TOUGH, (test, rock), 2] for test in groove.LABORATORY]
+        runs.append(plan[groove.TOUGH, groove.BASE if rock == groove.TOUGHER else f"{groove.BASE}, {rock}", 2])
+        for _, _, values in runs:
+            assert values["seed"] == 2 and values["radius"] == 9e-4 and values["rock"] == groove.ROCK
+            assert {name: of for name, of in values.items() if "energy" in name} == given
+    assert plan["0.9", ("toughness", groove.TOUGHER), 1][2]["size"] == pytest.approx(1.5 * 0.0168)
+    assert ("0.6", ("toughness", groove.TOUGHER), 1) not in plan
+
+
 def test_changes_are_those_of_the_same_packings(tmp_path):
     """A case whose force is 0.1 kN higher in two packings that differ by 0.5 kN."""
     made_up(tmp_path)
@@ -114,6 +127,9 @@ def test_the_page(tmp_path, monkeypatch):
     assert groove.main(tmp_path, ["--read"]) == 0
     page = (tmp_path / "groove.md").read_text(encoding="utf-8")
     assert "| 13 | 3 | 0.95 ± " in page and "is 0.3 ± " in page and "50 ± " in page and "UCS 52 ± 0.58 MPa" in page
+    # 0.95 kN over 13 x 5 mm are 14.6 MJ/m3.
+    assert "| 90 and 1000 J/m2 | 1.2 ± 0.058 | 52 ± 0.58 | 0.95 ± " in page and "| 28.1 ± " in page
+    assert "| 3, 3, 3 |" in page
     assert (tmp_path / "groove.png").stat().st_size > 4e4
 
 

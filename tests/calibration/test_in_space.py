@@ -53,7 +53,7 @@ def test_all_targets_are_met_and_the_rock_can_be_read(run, tmp_path, name, count
                      (rock_file.find(name), tmp_path / "out" / "rock.json"))
     assert after.parts["plane"] == before.parts["plane"] and after.targets == before.targets
     space = after.parts["space"]
-    assert space.resolution == {"radius": 9e-4} and space.parameters["grain_edge"] == 1.6 * 9e-4
+    assert space.resolution == {"radius": 9e-4} and "grain_edge" not in space.parameters
     assert space.parameters["mu"] == before.parts["plane"].parameters["mu"]
     for observable, allowed in (("youngs_modulus", 0.05), ("ucs", 0.05), ("tensile_strength", 0.1)):
         assert space.measured[observable]["mean"] == pytest.approx(before.targets[observable], rel=allowed)
@@ -61,13 +61,13 @@ def test_all_targets_are_met_and_the_rock_can_be_read(run, tmp_path, name, count
     assert space.measured["ucs"]["packings"] == in_space.CHECKS
 
 
-def test_energies_can_be_given_and_grains_left_out(run, tmp_path):
+def test_energies_and_grains_can_be_given(run, tmp_path):
     """A toughness that is off is said, and not fitted."""
     code, *_ = run("--rock", "medium_sandstone", "--bond_shear_energy", 1000, "--bond_fracture_energy", 64,
-                   "--grains", 0)
+                   "--grains", 1.6)
     space = rock_file.read(tmp_path / "out" / "rock.json", OF_ROCK).parts["space"]
     assert space.parameters["bond_shear_energy"] == 1000 and space.parameters["bond_fracture_energy"] == 64
-    assert "grain_edge" not in space.parameters
+    assert space.parameters["grain_edge"] == pytest.approx(1.6 * 6e-4)
     page = (tmp_path / "out" / "in_space.md").read_text(encoding="utf-8")
     assert code == 3 and "fracture_toughness is 1.2 MPa sqrt(m) ±" in page
     assert space.measured["fracture_toughness"]["mean"] == pytest.approx(1.2e6)
@@ -132,8 +132,8 @@ def test_blocks_grow_with_their_spheres_and_their_parameters_are_the_scripts(tmp
     rock = rock_file.read(rock_file.find("crushing_sandstone"), OF_ROCK)
     for radius in (3e-4, 6e-4):
         laboratory = BlockLaboratory(runs=Kept(), rock=rock, radius=radius, given={})
-        laboratory.measure(in_space.WITHOUT_GRAINS, [7])
-        assert list(laboratory.toughness(in_space.WITHOUT_GRAINS, [7])) == [1.0]
+        laboratory.measure(in_space.FIRST, [7])
+        assert list(laboratory.toughness(in_space.FIRST, [7])) == [1.0]
     fine, coarse = (started["tension-7", radius] for radius in (3e-4, 6e-4))
     assert all(coarse[name] == pytest.approx(2 * fine[name], rel=1e-3)
                for name in ("width", "height", "depth", "kn", "kt"))
