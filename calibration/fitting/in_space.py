@@ -23,7 +23,7 @@ from calibration import command, generated
 from calibration.campaigns.runs import RunFailed, Runs, as_they_end
 from calibration.fitting.rock_fit import COMMON_SEEDS, exit_code, statistics, verdict
 from calibration.fitting.rock_page import allowed, measured, off, shown
-from calibration.fitting.rock_tests import COMMON, DROP
+from calibration.fitting.rock_tests import COMMON, DROP, LEAST
 from calibration.fitting.rock_unknowns import Observable
 from calibration.fitting.size_powers import folders, plane_rock
 from calibration.fitting.surrogate import Problem, Surrogate, solve
@@ -184,12 +184,15 @@ def given_of(values):
 
 
 def checked(laboratory, x, seeds):
-    """{Observable: Verdict} on the packings `seeds`; the toughness last, where the rock has a target for it."""
+    """{Observable: Verdict} on the packings `seeds`; the toughness last, where the rock has a target for it and at
+    least two packings tell it."""
     found = laboratory.measure(x, seeds)
     target = laboratory.rock.targets.get("fracture_toughness")
     if target:
-        found[Observable("fracture_toughness", "toughness", "fracture_toughness", target, 0.1, "toughness",
-                         "Pa sqrt(m)")] = laboratory.toughness(x, seeds[:NOTCHES])
+        toughness = laboratory.toughness(x, seeds[:NOTCHES])
+        if np.isfinite(toughness).sum() >= LEAST:
+            found[Observable("fracture_toughness", "toughness", "fracture_toughness", target, 0.1, "toughness",
+                             "Pa sqrt(m)")] = toughness
     return {o: verdict(o, of) for o, of in found.items()}
 
 

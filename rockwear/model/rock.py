@@ -276,9 +276,9 @@ class RockAssembly:
         """Leave out the bonds across the segment from `start` to `end`, (2,) m: a notch of no width, in space all
         through the depth.
 
-        The particles within a largest diameter of it are of side 1, on the left of the way from start to end, or 2, and so
-        are all that lose a bond. Those of different sides never touch unless they are bonded, so that overlaps of the
-        packing across the notch push nothing apart.
+        The particles within a largest diameter of it are of side 1, on the left of the way from start to end, or 2,
+        and so are all that lose a bond. Those of different sides never touch unless they are bonded, so that overlaps
+        of the packing across the notch push nothing apart.
         """
         along = np.subtract(end, start)
         length = np.linalg.norm(along)

@@ -74,6 +74,13 @@ def test_energies_and_grains_can_be_given(run, tmp_path):
     assert space.measured["fracture_toughness"]["packings"] == in_space.NOTCHES
 
 
+def test_a_toughness_that_one_packing_alone_tells_is_left_out(run, monkeypatch, tmp_path):
+    monkeypatch.setattr(BlockLaboratory, "toughness", lambda *_: np.array([np.nan, 0.6e6, np.nan]))
+    code, *_ = run("--rock", "medium_sandstone")
+    space = rock_file.read(tmp_path / "out" / "rock.json", OF_ROCK).parts["space"]
+    assert code == 0 and "fracture_toughness" not in space.measured and "ucs" in space.measured
+
+
 def test_what_is_not_reached_is_said(run, monkeypatch, tmp_path):
     """A tensile strength that nothing changes."""
     def stuck(laboratory, x, seeds):
