@@ -29,7 +29,7 @@ from calibration.fitting.size_powers import folders, plane_rock
 from calibration.fitting.surrogate import Problem, Surrogate, solve
 from calibration.laboratory.loading import loading, strength
 from rockwear.kernels.checks import ParameterError, require
-from rockwear.kernels.parameter import Group, Parameter, above_zero, file, integer, number, text
+from rockwear.kernels.parameter import Group, Parameter, above_zero, file, integer, number, text, zero_or
 from rockwear.run import parameters
 
 SCRIPT, NOTCHED = "yade_scripts/uniaxial_3d.py", "yade_scripts/toughness_3d.py"
@@ -42,7 +42,7 @@ SIZE, THICKNESS = 28, 11
 POROSITY, GAP = 0.35, 0.1
 """Of the packings; bonding_gap over the radius."""
 OF_PLANE = ("kn", "kt", "bond_tension", "bond_cohesion", "bond_tension_power", "bond_cohesion_power", "bonding_gap",
-            "porosity", "grain_edge", "grain_kn", "grain_kt")
+            "porosity", "grain_edge", "grain_kn", "grain_kt", "grain_strength")
 """Parameters that do not carry over."""
 UNKNOWNS = "kn over E d", "kt over kn", "bond_tension over the tensile strength", "bond_cohesion over UCS"
 """Their logarithms are what is varied. d: diameter of the spheres."""
@@ -65,7 +65,9 @@ GROUPS = [
                   "over its area, for want of grains that interlock; 0: that of the plane; of cohesive bonds alone"),
         Parameter("bond_fracture_energy", 0.0, "J/m2", number(0), "work to break a bond in tension over its area; 0: "
                   "that of the plane; of cohesive bonds alone"),
-        Parameter("grains", 0.0, "", number(0), "mean edge of grains over the radius of the spheres; 0: none"))),
+        Parameter("grains", 0.0, "", number(0), "mean edge of grains over the radius of the spheres; 0: none"),
+        Parameter("grain_strength", 0.0, "", zero_or(1, 1e3), "of bonds within a grain over those between grains; 0: "
+                  "grains do not break"))),
     Group("search", (Parameter("packings", 3, "", integer(2), "packings of each set of tests"),
                      Parameter("jobs", 2, "", integer(1), "tests at a time"))),
     Group("output", (Parameter("out", "", "", text, "folder of rock.json, in_space.md and all runs"),))]
@@ -180,7 +182,8 @@ def rock_of(values):
 def given_of(values):
     """{parameter: value} in place of the plane's."""
     edge = float(f"{values['grains'] * values['radius']:.4g}")
-    return {**{name: values[name] for name in ENERGIES if values[name]}, **({"grain_edge": edge} if edge else {})}
+    return {**{name: values[name] for name in ENERGIES if values[name]},
+            **({"grain_edge": edge, "grain_strength": values["grain_strength"]} if edge else {})}
 
 
 def checked(laboratory, x, seeds):

@@ -220,12 +220,13 @@ class RockAssembly:
         return (0.5 * math.pi if power == 1 else 2.0) * float(
             np.sum((shares / self.scale**power)[inside]) / halves[inside].sum())
 
-    def bond(self, law, *, grain_edge=0.0, within_grains=None, weibull_modulus=0.0, seed=0):
+    def bond(self, law, *, grain_edge=0.0, within_grains=None, grain_strength=0.0, weibull_modulus=0.0, seed=0):
         """Give every bond its law, `laws` (m,), as the rock's law asks for at its place.
 
         law: of kernels.bond_laws; grain_edge: m, mean edge of grains, 0 for none; within_grains: (kn, kt), N/m, of the
-        bonds within a grain, which do not break; weibull_modulus: of the scatter of strengths about their mean, 0 for
-        none; seed: of grains and scatter. Raises ParameterError.
+        bonds within a grain; grain_strength: their strengths over those between grains, 0: they do not break;
+        weibull_modulus: of the scatter of strengths about their mean, 0 for none; seed: of grains and scatter. Raises
+        ParameterError.
         """
         sizes = self.bond_areas if law.by_area else self.strength_factor
         if weibull_modulus:
@@ -239,7 +240,7 @@ class RockAssembly:
         kinds = list(zip(sizes.tolist(), self.strength_factor.tolist()))
         scaled = {(size, ratio): law.coarser(ratio).scaled(size) for size, ratio in sorted(set(kinds))}
         if grain_edge:
-            inner = _within_grains(law, scaled, *(within_grains or (law.kn, law.kt)))
+            inner = _within_grains(law, scaled, *(within_grains or (law.kn, law.kt)), grain_strength)
         self.laws = [(inner if inside else scaled)[kind] for kind, inside in zip(kinds, within)]
         if law.yade_law == "Cpm":
             self._clear_overlaps()
@@ -444,8 +445,11 @@ class Block(RockAssembly):
         return packing.contacts(positions, radii, gap + (self.loosened - 1) * (2 * radii.max() + gap))
 
 
-def _within_grains(law, scaled, kn, kt):
-    """{kind: law} of bonds that do not break, of these stiffnesses (N/m). scaled: {kind: law} of those that do."""
+def _within_grains(law, scaled, kn, kt, strength):
+    """{kind: law} of bonds within grains, of these stiffnesses (N/m) and so many times the strengths, 0: that do not
+    break. scaled: {kind: law} of those between grains."""
+    if strength:
+        return {kind: one.stronger(strength, kn=kn, kt=kt) for kind, one in scaled.items()}
     if isinstance(law, Cohesive):
         return {kind: one.unbreakable(kn=kn, kt=kt) for kind, one in scaled.items()}
     return dict.fromkeys(scaled, ElasticBrittle(kn=kn, kt=kt, Rn=UNBREAKABLE, Rt=UNBREAKABLE, mu=law.mu))

@@ -50,8 +50,10 @@ BOND_PARAMETERS = (
     Parameter("weibull_modulus", 0.0, "", number(0), "of the scatter of bond strengths about their mean; 0: none"),
     Parameter("rotation", "free", "", choice("free", "blocked"), "of the rock's particles; blocked: none ever turns, "
               "they interlock as grains do in the crudest way"),
-    Parameter("grain_edge", 0.0, "m", number(0), "mean edge of grains, Voronoi cells of particles whose bonds do not "
-              "break; 0: no grains", "[Bahaaddini 2018, sec. 2]", size_power=(1, 1)),
+    Parameter("grain_edge", 0.0, "m", number(0), "mean edge of grains, Voronoi cells of particles; 0: no grains",
+              "[Bahaaddini 2018, sec. 2]", size_power=(1, 1)),
+    Parameter("grain_strength", 0.0, "", zero_or(1, 1e3), "strengths of bonds within a grain over those between "
+              "grains; 0: grains do not break", "0: [Bahaaddini 2018, sec. 2]"),
     Parameter("grain_kn", 0.0, "N/m", number(0), "normal stiffness of bonds within a grain; 0: kn", size_power=(0, 1)),
     Parameter("grain_kt", 0.0, "N/m", number(0), "tangential stiffness of bonds within a grain; 0: kt",
               size_power=(0, 1)))

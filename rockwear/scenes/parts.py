@@ -33,7 +33,7 @@ def bond(rock, v):
         if v.rotation == "blocked":
             rock.block_rotation()
         rock.bond(law, grain_edge=v.grain_edge, within_grains=(v.grain_kn or law.kn, v.grain_kt or law.kt),
-                  weibull_modulus=v.weibull_modulus, seed=v.seed)
+                  grain_strength=v.grain_strength, weibull_modulus=v.weibull_modulus, seed=v.seed)
     return rock
 
 

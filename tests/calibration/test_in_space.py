@@ -64,10 +64,10 @@ def test_all_targets_are_met_and_the_rock_can_be_read(run, tmp_path, name, count
 def test_energies_and_grains_can_be_given(run, tmp_path):
     """A toughness that is off is said, and not fitted."""
     code, *_ = run("--rock", "medium_sandstone", "--bond_shear_energy", 1000, "--bond_fracture_energy", 64,
-                   "--grains", 1.6)
+                   "--grains", 1.6, "--grain_strength", 12)
     space = rock_file.read(tmp_path / "out" / "rock.json", OF_ROCK).parts["space"]
     assert space.parameters["bond_shear_energy"] == 1000 and space.parameters["bond_fracture_energy"] == 64
-    assert space.parameters["grain_edge"] == pytest.approx(1.6 * 6e-4)
+    assert space.parameters["grain_edge"] == pytest.approx(1.6 * 6e-4) and space.parameters["grain_strength"] == 12
     page = (tmp_path / "out" / "in_space.md").read_text(encoding="utf-8")
     assert code == 3 and "fracture_toughness is 1.2 MPa sqrt(m) ±" in page
     assert space.measured["fracture_toughness"]["mean"] == pytest.approx(1.2e6)

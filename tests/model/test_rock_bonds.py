@@ -166,6 +166,26 @@ def test_bonds_within_a_grain_do_not_break_and_have_their_own_stiffness(law):
     assert set(rock.stiffness()[0]) == {2e10}
 
 
+@pytest.mark.parametrize("law", [COULOMB, COHESIVE], ids=["coulomb", "cohesive"])
+def test_bonds_within_a_grain_may_be_so_many_times_as_strong(law):
+    """A third bond breaks at this multiple of the others' force, and a cohesive one takes as much more energy."""
+    rock, plain = Specimen(**SPECIMEN), Specimen(**SPECIMEN)
+    plain.bond(law)
+    rock.bond(law, grain_edge=4e-3, grain_strength=12.0, within_grains=(5e10, 3e10), seed=2)
+    inside = np.equal(*rock.grains[rock.pairs].T)
+    for within, found, one in zip(inside, rock.laws, plain.laws):
+        factor = 12.0 if within else 1.0
+        assert (found.Rn, found.Rt) == pytest.approx((factor * one.Rn, factor * one.Rt))
+        assert (found.kn, found.kt) == ((5e10, 3e10) if within else (one.kn, one.kt))
+        if law is COHESIVE:
+            # Or where its elastic energy at the peak is more: such a bond is brittle.
+            least = 0.5 * found.Rn**2 / found.kn
+            assert found.fracture_energy()[0] == pytest.approx(max(factor * one.fracture_energy()[0], least), rel=2e-3)
+    strongest = next(one for one, within in zip(rock.laws, inside) if within)
+    peak = strongest.drive(np.linspace(0, 2 * strongest.Rn / strongest.kn, 2001), np.zeros(2001))[0].max()
+    assert peak == pytest.approx(strongest.Rn, rel=2e-3)
+
+
 def test_grains_are_refused_with_a_law_that_is_linear_nowhere():
     with pytest.raises(ParameterError, match="^grain_edge = 0.004 m: must be 0 with the law padova"):
         Specimen(**SPECIMEN).bond(NonlinearElastoPlastic(), grain_edge=4e-3)

@@ -95,7 +95,7 @@ def test_a_block_is_weaker_in_tension_and_as_stiff(compressed, tmp_path):
 
 
 def test_stopped_and_resumed_equals_never_stopped(tmp_path):
-    options = dict(grain_edge=3e-3, test="tension", speed=0.01, checkpoint_interval=0.01)
+    options = dict(grain_edge=3e-3, grain_strength=2, test="tension", speed=0.01, checkpoint_interval=0.01)
     never = laboratory(tmp_path / "never", **options)
     assert never.code == 0, never.stderr
     out = tmp_path / "out"
@@ -111,6 +111,7 @@ REFUSED = [
     ({"grip": 0.03}, "grip = 0.03 m: must be less than half the width 0.05"),
     ({"grip": 1e-5}, "grip = 1e-05 m: must be deep enough to hold a particle at each end"),
     ({"grain_edge": 1.0}, "grain_edge = 1 m: must be at most"),
+    ({"grain_strength": 0.5}, "grain_strength = 0.5: must be 0 or between 1 and 1000"),
     ({"time_step": 1e-3}, "time_step = 0.001 s: must be at most the stable step")]
 
 

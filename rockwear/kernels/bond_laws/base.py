@@ -222,6 +222,13 @@ class LinearBondLaw(BondLaw):
         vars(law).update(vars(self), Rn=self.Rn * factor, Rt=self.Rt * factor)
         return law
 
+    def stronger(self, factor, *, kn, kt):
+        """The law of a bond of these stiffnesses (N/m) with `factor` times the strengths: one within a grain that may
+        break. Slopes of softening stay, or the displacements at its end where the law has those."""
+        law = self.scaled(1.0)
+        vars(law).update(kn=kn, kt=kt, Rn=factor * self.Rn, Rt=factor * self.Rt)
+        return law
+
     def stiffest(self):
         """(kn, kt), N/m: the initial stiffness, which neither damage nor plastic flow raises."""
         return self.kn, self.kt
