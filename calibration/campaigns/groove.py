@@ -58,7 +58,10 @@ OTHERS = {
     **{f"13, {rock}": ROCKS[rock] for rock in BRITTLER}}
 """{case: parameters} of tools 13 mm wide that differ from those of CUT in one thing: degrees, mm of wear flat, mm of
 depth with six of them of way and two beside, rock."""
-CASES = {"0.45": ["13", "13, flat 2"], "0.6": BREADTHS, "0.9": [*BREADTHS, *SLOWER, *OTHERS]}
+GRAINY = "interlocked_sandstone"
+OF_GRAINS = {f"{name}, {GRAINY}": breadth for name, breadth in BREADTHS.items()}
+"""{case: m}: breadths in a rock of grains, whose toughness is that of a sandstone."""
+CASES = {"0.45": ["13", "13, flat 2"], "0.6": [*BREADTHS, *OF_GRAINS], "0.9": [*BREADTHS, *OF_GRAINS, *SLOWER, *OTHERS]}
 """{radius: cases}."""
 LABORATORY = {"compression": ("yade_scripts/uniaxial_3d.py", "peak_stress", dict(width=0.02, height=0.01, depth=0.01),
                               dict(test="compression", speed=0.1)),
@@ -107,6 +110,8 @@ def named(radius, case, seed):
 
 def changed(case):
     """Parameters of a case other than those of CUT."""
+    if case in OF_GRAINS:
+        return {**wider(OF_GRAINS[case]), "rock": GRAINY}
     other = slower(SLOWER[case]) if case in SLOWER else OTHERS.get(case, {})
     return {**wider(BREADTHS.get(case, BREADTHS[BASE])), **other}
 
@@ -190,13 +195,13 @@ def rocks_table(found, strengths):
                    shown(scaled(energy, 100 / (1e-6 * ucs.mean()))), f"{len(toughness)}, {len(ucs)}, {len(cut)}"]
 
 
-def sides(found):
+def sides(found, breadths=BREADTHS):
     """(slice, kN/m; sides, kN), each Measured: the line of the mean force over the breadth, in each of the packings
-    that have all breadths; unknown without one."""
-    seeds = sorted(set.intersection(*(set(found.get(name, {})) for name in BREADTHS)))
+    that have all of `breadths` {case: m}; unknown without one."""
+    seeds = sorted(set.intersection(*(set(found.get(name, {})) for name in breadths)))
     if not seeds:
         return steady_record.UNKNOWN, steady_record.UNKNOWN
-    lines = [np.polyfit(list(BREADTHS.values()), [found[name][seed]["force"].value for name in BREADTHS], 1)
+    lines = [np.polyfit(list(breadths.values()), [found[name][seed]["force"].value for name in breadths], 1)
              for seed in seeds]
     return tuple(map(steady_record.sample_mean, np.transpose(lines)))
 
@@ -211,7 +216,7 @@ def rows(found):
 def changes(found):
     """Rows of the table of a radius: what each case changes in the packings that BASE has, too."""
     for name, each in found.items():
-        seeds = each.keys() & found.get(BASE, {}).keys() if name not in BREADTHS else ()
+        seeds = each.keys() & found.get(BASE, {}).keys() if name not in {**BREADTHS, **OF_GRAINS} else ()
         if seeds:
             here, base = (_over({seed: of[seed] for seed in seeds}) for of in (each, found[BASE]))
             by = [(difference(here, base, what), base[what].value) for what in CHANGES.values()]
@@ -281,10 +286,11 @@ def write(folder):
             lines += ["Rocks that differ in the fracture energies of their bonds, in tension and in shear:", "",
                       *generated.table(["rock", "K_IC, MPa√m", "UCS, MPa", "mean force, kN", "over depth and breadth, "
                                         "% of the UCS", "packings of each"], rocks)]
-        a_slice, edges = sides(found)
-        if math.isfinite(a_slice.value):
-            lines += [f"The mean force is {shown(edges)} kN at the sides and {shown(a_slice)} kN per metre of breadth "
-                      "(mean of the lines of each packing that has all breadths).", ""]
+        for rock, breadths in ((ROCK, BREADTHS), (GRAINY, OF_GRAINS)):
+            a_slice, edges = sides(found, breadths)
+            if math.isfinite(a_slice.value):
+                lines += [f"The mean force in `{rock}` is {shown(edges)} kN at the sides and {shown(a_slice)} kN per "
+                          "metre of breadth (mean of the lines of each packing that has all breadths).", ""]
     if cuts:
         drawn = next((RunFolder(folder / f"cut/{'-'.join(DRAWN)}-{seed}")
                       for seed in cuts.get(DRAWN[0], {}).get(DRAWN[1], {})), None)

@@ -97,6 +97,18 @@ def test_other_tools_differ_from_the_base_by_what_they_are_for():
     assert deep["depth"] == pytest.approx(deep["breadth"] + 4 * deep["depth_of_cut"])
 
 
+def test_a_rock_of_grains_is_cut_by_the_same_tools(tmp_path):
+    plan = {(case, seed): values for (_, case, seed), (_, _, values) in groove.plan(["0.6"]).items()}
+    for name in groove.BREADTHS:
+        rock, grainy = plan[name, 2], plan[f"{name}, {groove.GRAINY}", 2]
+        assert {key for key in rock.keys() | grainy.keys() if rock.get(key) != grainy.get(key)} == {"rock"}
+    made_up(tmp_path)
+    found = groove.measured(tmp_path)[0]["0.9"]
+    found = {f"{name}, {groove.GRAINY}": found[name] for name in groove.BREADTHS}
+    assert groove.sides(found, groove.OF_GRAINS)[1].value == pytest.approx(1e-3 * SIDES)
+    assert not list(groove.changes(found))
+
+
 def test_less_tough_rocks_are_cut_and_tested():
     """Those of the laboratory and of the cuts are the same; specimens grow with the spheres."""
     plan = groove.plan(groove.RADII)

@@ -254,6 +254,15 @@ def test_a_crushed_bond_holds_from_where_its_force_vanishes():
         assert CRUSHING.respond(bond, un, (0.0,))[0] == pytest.approx(force, abs=1e-6 * RC)
 
 
+def test_bonds_that_crush_are_not_all_but_brittle():
+    """A brittle one that YADE has crushed would be thrown apart: past its end it pulls the wrong way until a look."""
+    given = dict(kn=KN, kt=KT, bond_tension=RN, bond_cohesion=RT, bond_fracture_energy=1e-9, mu=MU)
+    brittle, crushing = Cohesive(**given), Cohesive(**given, bond_crushing=RC)
+    assert brittle.gone == pytest.approx(1.001 * ONSET) and crushing.gone == pytest.approx(2 * ONSET)
+    assert crushing.fracture_energy()[0] == pytest.approx(2 * 0.5 * RN * ONSET)
+    assert Cohesive(**{**given, "bond_fracture_energy": 10 * RN * ONSET}, bond_crushing=RC).gone == 20 * ONSET
+
+
 def test_bonds_within_grains_crush_and_never_break():
     bond = (inner := CRUSHING.scaled(0.3).unbreakable(kn=2 * KN, kt=KT)).initial_state()
     assert inner.respond(bond, -1.0, (0.0,))[0] == pytest.approx(-0.3 * RC) and CRUSHING.kn == KN

@@ -8,8 +8,10 @@ from rockwear.kernels.parameter import Parameter, number, plausible, zero_or
 
 UNBREAKABLE = 1e30
 """Strength (N) of bonds that are not to break at all."""
-BRITTLEST = 1.001
-"""Least opening at the end of softening, over that at the peak."""
+BRITTLEST, CRUSHING = 1.001, 2.0
+"""Least opening at the end of softening, over that at the peak; of bonds that may crush: past its end YADE's model
+pulls a crushed bond the wrong way until the next look, up to onset/(gone - onset) times as strongly as an elastic one.
+"""
 
 
 def opening(softening, *, onset, gone):
@@ -58,7 +60,8 @@ class Cohesive(LinearBondLaw):
     bond_tension_power, bond_cohesion_power  a rock of coarser discs of the same energies is more brittle, as G kn/(Rn^2
     r) falls with the radius r, and weaker: strengths that grow with so many powers of r keep those of the rock
     (calibration/results/rock_laws.md).
-    Elastic energies Rn^2/(2 kn) and Rt^2/(2 kt) are lower bounds of G and G2. Raises ParameterError.
+    Elastic energies Rn^2/(2 kn) and Rt^2/(2 kt) are lower bounds of G and G2, of bonds that crush twice the former.
+    Raises ParameterError.
     """
 
     name = "cohesive"
@@ -117,7 +120,7 @@ class Cohesive(LinearBondLaw):
     @property
     def gone(self):
         """Opening (m) at which the bond is broken."""
-        return max(self.end, BRITTLEST * self.onset)
+        return max(self.end, (BRITTLEST if self.Rc == math.inf else CRUSHING) * self.onset)
 
     @property
     def slip_end(self):
