@@ -2,12 +2,12 @@
 
     python3 -m calibration.campaigns.groove DIR [RADIUS ...] [--read] [--jobs N | --scheduler ADDRESS]
 
-Tools of the breadths BREADTHS cut `crushing_sandstone` in space, of spheres of the radii RADII (mm), to the same depth.
-The mean force grows as that of a slice times the breadth, and what is left at no breadth is cut at the tool's two
-sides. Other tools of 13 mm stand beside that one. The rock is crushed in the laboratory, too. N runs at a time (2), or
-as many as a dask scheduler's workers take; a folder a run; finished runs are not repeated, so that an interrupted
-campaign resumes. --read starts no run and evaluates those that exist. Writes into DIR groove.md, groove.png and
-provenance.json.
+Tools of the breadths BREADTHS cut `crushing_sandstone` in space, of spheres of the radii RADII (mm), and a rock of
+grains (GRAINY) to the same depth. The mean force grows as that of a slice times the breadth, and what is left at no
+breadth is cut at the tool's two sides. Other tools of 13 mm, and rocks less tough, stand beside that one. The rocks are
+tested in the laboratory, too. N runs at a time (2), or as many as a dask scheduler's workers take; a folder a run;
+finished runs are not repeated, so that an interrupted campaign resumes. --read starts no run and evaluates those that
+exist. Writes into DIR groove.md, groove.png and provenance.json.
 """
 import itertools
 import math
@@ -19,6 +19,7 @@ import numpy as np
 from calibration import generated
 from calibration.campaigns.runs import Runs, command_line, wait_for
 from calibration.campaigns.steady_cut_numbers import difference, of_forces, over_packings, scaled, shown
+from calibration.fitting import in_space
 from rockwear.kernels import steady_record
 from rockwear.kernels.fragments import pieces
 from rockwear.report import palette, plots
@@ -63,10 +64,9 @@ OF_GRAINS = {f"{name}, {GRAINY}": breadth for name, breadth in BREADTHS.items()}
 """{case: m}: breadths in a rock of grains, whose toughness is that of a sandstone."""
 CASES = {"0.45": ["13", "13, flat 2"], "0.6": [*BREADTHS, *OF_GRAINS], "0.9": [*BREADTHS, *OF_GRAINS, *SLOWER, *OTHERS]}
 """{radius: cases}."""
-LABORATORY = {"compression": ("yade_scripts/uniaxial_3d.py", "peak_stress", dict(width=0.02, height=0.01, depth=0.01),
-                              dict(test="compression", speed=0.1)),
-              "toughness": ("yade_scripts/toughness_3d.py", "fracture_toughness", dict(size=0.0168, depth=0.0066), {})}
-"""{test: (script, result, m of the specimen for spheres of 0.6 mm, other parameters)}."""
+LABORATORY = {"compression": (in_space.SCRIPT, "peak_stress", in_space.SIDES, dict(test="compression", speed=0.1)),
+              "toughness": (in_space.NOTCHED, "fracture_toughness", in_space.NOTCHED_SIDES, {})}
+"""{test: (script, result, sides of the specimen over the radius, other parameters)}."""
 TOUGH = "0.9"
 """Radius at which the rocks stand beside one another."""
 QUANTITIES = {"mean force, kN": "force", "over depth and breadth, MJ/m³": "energy", "peak / mean": "peaks",
@@ -99,8 +99,7 @@ def plan(radii):
 def specimen(test, rock):
     """(script, parameters) of a test of LABORATORY on a rock of these parameters."""
     script, _, sides, more = LABORATORY[test]
-    size = rock["radius"] / RADII["0.6"]
-    return script, {**rock, **{side: float(f"{size * length:.6g}") for side, length in sides.items()}, **more}
+    return script, {**rock, **in_space.sized(sides, rock["radius"]), **more}
 
 
 def named(radius, case, seed):

@@ -6,11 +6,11 @@ Blocks of some 1440 spheres are compressed and pulled until E, nu, UCS and tensi
 file; then other packings are tested, and the toughness of three of them is measured, where the rock has a target for
 it. Fitted are the stiffnesses of the bonds and their two strengths; friction and crushing are those of the plane, and
 the fracture energies, too, unless they are given. Where slip does not damage the bonds of the plane, UCS over tensile
-strength stays near six without grains; --bond_shear_energy 1000 doubles it, and makes a tough rock. --grains 1.6 makes
-it sixteen at the toughness of a sandstone, but such a rock is for the laboratory: its grains do not break, are as large
-as the tip of a tool, and lock before it (calibration/results/groove.md). nu is that of a pulled block: in a compressed
-one the first cracks open along the load. Writes DIR/rock.json, the rock with both parts, and DIR/in_space.md. What was
-interrupted goes on where it was when it is started again with the same words.
+strength stays near six without grains; --bond_shear_energy 1000 doubles it, and makes a tough rock. --grains 1.8
+--grain_strength 15 makes it twelve at the toughness of a sandstone; packings of grains differ by a tenth, and ask for
+--packings 5. Grains that do not break lock before a tool (calibration/results/groove.md). nu is that of a pulled block:
+in a compressed one the first cracks open along the load. Writes DIR/rock.json, the rock with both parts, and
+DIR/in_space.md. What was interrupted goes on where it was when it is started again with the same words.
 """
 import hashlib
 import json
@@ -35,10 +35,8 @@ from rockwear.run import parameters
 SCRIPT, NOTCHED = "yade_scripts/uniaxial_3d.py", "yade_scripts/toughness_3d.py"
 LAWS = "cohesive", "coulomb"
 ENERGIES = "bond_shear_energy", "bond_fracture_energy"
-SIDES = {"width": 100 / 3, "height": 50 / 3, "depth": 50 / 3}
-"""Of a block over the radius; it is loaded along its width."""
-SIZE, THICKNESS = 28, 11
-"""Of a notched block over the radius."""
+SIDES, NOTCHED_SIDES = {"width": 100 / 3, "height": 50 / 3, "depth": 50 / 3}, {"size": 28, "depth": 11}
+"""Over the radius, of a block, which is loaded along its width, and of a notched one."""
 POROSITY, GAP = 0.35, 0.1
 """Of the packings; bonding_gap over the radius."""
 OF_PLANE = ("kn", "kt", "bond_tension", "bond_cohesion", "bond_tension_power", "bond_cohesion_power", "bonding_gap",
@@ -73,6 +71,11 @@ GROUPS = [
     Group("output", (Parameter("out", "", "", text, "folder of rock.json, in_space.md and all runs"),))]
 
 
+def sized(sides, radius):
+    """{side: m} of {side: its length over the radius}."""
+    return {side: float(f"{length * radius:.4g}") for side, length in sides.items()}
+
+
 def observables(targets):
     """[Observable] of the targets {property: value} of a rock."""
     return [Observable("youngs_modulus", "compression", "youngs_modulus", targets["youngs_modulus"], 0.05, "E", "Pa"),
@@ -101,7 +104,7 @@ class BlockLaboratory:
 
     def measure(self, x, seeds):
         """{Observable: (packings,) values}. Raises RunFailed."""
-        box = {side: float(f"{length * self.radius:.4g}") for side, length in SIDES.items()}
+        box = sized(SIDES, self.radius)
         strains = {test: strength(test, self.rock.targets) / self.rock.targets["youngs_modulus"]
                    for test in ("compression", "tension")}
         found = self._run(x, seeds, SCRIPT, {test: dict(test=test, drop=DROP, **box, **loading(test, strain))
@@ -110,8 +113,7 @@ class BlockLaboratory:
 
     def toughness(self, x, seeds):
         """(packings,) Pa sqrt(m): fracture toughness. Raises RunFailed."""
-        found = self._run(x, seeds, NOTCHED, {"toughness": dict(
-            size=float(f"{SIZE * self.radius:.4g}"), depth=float(f"{THICKNESS * self.radius:.4g}"))})
+        found = self._run(x, seeds, NOTCHED, {"toughness": sized(NOTCHED_SIDES, self.radius)})
         return np.array([found["toughness", seed].result("fracture_toughness") for seed in seeds])
 
     def _run(self, x, seeds, script, tests):
