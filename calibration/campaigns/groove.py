@@ -62,7 +62,12 @@ depth with six of them of way and two beside, rock."""
 GRAINY = "interlocked_sandstone"
 OF_GRAINS = {f"{name}, {GRAINY}": breadth for name, breadth in BREADTHS.items()}
 """{case: m}: breadths in a rock of grains, whose toughness is that of a sandstone."""
-CASES = {"0.45": ["13", "13, flat 2"], "0.6": [*BREADTHS, *OF_GRAINS], "0.9": [*BREADTHS, *OF_GRAINS, *SLOWER, *OTHERS]}
+GRAINY_SLOWER = {f"13, {GRAINY}, 2 m/s": 2.0}
+GRAINY_OTHERS = {f"13, {GRAINY}, held 25 mm below": dict(height=0.03)}
+"""{case: m/s}, {case: parameters}: what else may make it break as deep as it does. 25 mm: below the path; else 10."""
+SLOWER_ALL, OTHERS_ALL = {**SLOWER, **GRAINY_SLOWER}, {**OTHERS, **GRAINY_OTHERS}
+CASES = {"0.45": ["13", "13, flat 2"], "0.6": [*BREADTHS, *OF_GRAINS],
+         "0.9": [*BREADTHS, *OF_GRAINS, *SLOWER_ALL, *OTHERS_ALL]}
 """{radius: cases}."""
 LABORATORY = {"compression": (in_space.SCRIPT, "peak_stress", in_space.SIDES, dict(test="compression", speed=0.1)),
               "toughness": (in_space.NOTCHED, "fracture_toughness", in_space.NOTCHED_SIDES, {})}
@@ -71,13 +76,14 @@ TOUGH = "0.9"
 """Radius at which the rocks stand beside one another."""
 QUANTITIES = {"mean force, kN": "force", "over depth and breadth, MJ/m³": "energy", "peak / mean": "peaks",
               "thrust / cutting": "thrust", "friction, kN": "friction", "groove over tool": "section",
-              "overbreak / depth": "overbreak"}
+              "overbreak / depth": "overbreak", "carried off over tool": "carried_off",
+              "carried off below / depth": "carried_below"}
 """{heading: quantity of of_run}."""
 CHANGES = {"force, kN": "force", "thrust, kN": "pressed", "friction, kN": "friction", "peak / mean": "peaks",
-           "groove over tool": "section", "overbreak / depth": "overbreak"}
+           "groove over tool": "section", "overbreak / depth": "overbreak", "carried off below / depth": "carried_below"}
 """{heading: quantity of of_run} of the table beside the tool of CUT."""
-BASE = "13"
-"""Case beside which the other tools stand."""
+BASE, GRAINY_BASE = "13", f"13, {GRAINY}"
+"""Cases beside which the others stand, those of GRAINY beside the second."""
 
 
 def plan(radii):
@@ -109,10 +115,9 @@ def named(radius, case, seed):
 
 def changed(case):
     """Parameters of a case other than those of CUT."""
-    if case in OF_GRAINS:
-        return {**wider(OF_GRAINS[case]), "rock": GRAINY}
-    other = slower(SLOWER[case]) if case in SLOWER else OTHERS.get(case, {})
-    return {**wider(BREADTHS.get(case, BREADTHS[BASE])), **other}
+    rock = dict(rock=GRAINY) if GRAINY in case else {}
+    other = slower(SLOWER_ALL[case]) if case in SLOWER_ALL else OTHERS_ALL.get(case, {})
+    return {**wider({**BREADTHS, **OF_GRAINS}.get(case, BREADTHS[BASE])), **rock, **other}
 
 
 def file_name(case):
@@ -134,7 +139,8 @@ def slower(speed):
 def of_run(run):
     """{quantity: Measured} of one cut, from BEGIN depths of cut on. Forces in kN; energy, that of the mean force over
     depth and breadth, in MJ/m3; section: of the groove over that of the tool in the rock; overbreak: mean depth of the
-    rock that came off below the path, over the depth of cut."""
+    rock that came off below the path, over the depth of cut; carried_off, carried_below: the same of the rock that has
+    gone farther than the depth of cut. The rest is broken, but lies where it was."""
     depth, breadth = run.parameter("depth_of_cut"), run.parameter("breadth")
     cut = run.column("stage") == run.column("stage").max()
     time, cutting, thrust, friction = (run.column(name)[cut] for name in (
@@ -142,19 +148,23 @@ def of_run(run):
     distance = run.parameter("velocity") * (time - time[0])
     begin = BEGIN * depth
     found, _ = of_forces(distance, cutting, thrust, friction, depth=depth, begin=begin)
-    above, below = broken(run, begin, float(distance[-1]) - depth)
+    (above, below), (gone_above, gone_below) = (broken(run, begin, float(distance[-1]) - depth, than)
+                                                for than in (0.0, depth))
+    tool = depth * breadth
     energy = run.balances["energy"]
-    return {**found, "energy": scaled(found["force"], 1e-3 / (depth * breadth)),
-            "section": steady_record.Measured((above + below) / (depth * breadth), math.nan),
-            "overbreak": steady_record.Measured(below / (depth * breadth), math.nan),
-            "missed": steady_record.Measured(energy["residual"] / energy["tool_work"], math.nan)}
+    others = {"section": (above + below) / tool, "overbreak": below / tool,
+              "carried_off": (gone_above + gone_below) / tool, "carried_below": gone_below / tool,
+              "missed": energy["residual"] / energy["tool_work"]}
+    return {**found, "energy": scaled(found["force"], 1e-3 / tool),
+            **{name: steady_record.Measured(value, math.nan) for name, value in others.items()}}
 
 
-def broken(run, begin, end):
+def broken(run, begin, end, farther):
     """(above, below) the tool's path: m2 of rock in a section across the cut that has come off between `begin` and
-    `end` m of way."""
+    `end` m of way and gone `farther` (m) than that."""
     first, height = run.snapshot(0)["rock_positions"], run.parameter("height") - run.parameter("depth_of_cut")
-    here = off(run) & (first[:, 0] > begin) & (first[:, 0] < end)
+    gone = np.linalg.norm(run.snapshot(-1)["rock_positions"] - first, axis=1) >= farther
+    here = off(run) & gone & (first[:, 0] > begin) & (first[:, 0] < end)
     volume = run.parameter("width") * run.parameter("height") * run.parameter("depth") / len(first)
     over = first[:, 1] > height
     return tuple(np.count_nonzero(here & part) * volume / (end - begin) for part in (over, ~over))
@@ -215,9 +225,10 @@ def rows(found):
 def changes(found):
     """Rows of the table of a radius: what each case changes in the packings that BASE has, too."""
     for name, each in found.items():
-        seeds = each.keys() & found.get(BASE, {}).keys() if name not in {**BREADTHS, **OF_GRAINS} else ()
+        beside = found.get(GRAINY_BASE if GRAINY in name else BASE, {})
+        seeds = each.keys() & beside.keys() if name not in {**BREADTHS, **OF_GRAINS} else ()
         if seeds:
-            here, base = (_over({seed: of[seed] for seed in seeds}) for of in (each, found[BASE]))
+            here, base = (_over({seed: of[seed] for seed in seeds}) for of in (each, beside))
             by = [(difference(here, base, what), base[what].value) for what in CHANGES.values()]
             yield [name, len(seeds), *(f"{shown(change)} ({100 * change.value / of:+.0f} %)" for change, of in by)]
 
@@ -269,7 +280,7 @@ def write(folder):
     cuts, strengths = measured(folder)
     lines = ["Mean ± standard error: of the packings where there are three, else of the cuts' own records, from "
              f"{BEGIN} depth of cut on. Groove over tool: section of the rock that came off over depth times breadth. "
-             "Energy missed: residual of the balance over the tool's work, of the worst packing.", ""]
+             "Carried off: the part of it that has gone farther than the depth of cut. Energy missed: residual of the balance over the tool's work, of the worst packing.", ""]
     for radius, found in cuts.items():
         lines += [f"## Spheres of {radius} mm", ""]
         ucs = strengths.get((radius, "compression", TOUGHER))
@@ -278,7 +289,7 @@ def write(folder):
         lines += generated.table(["breadth, mm", "packings", *QUANTITIES, "energy missed"], rows(found))
         beside = list(changes(found))
         if beside:
-            lines += [f"Beside a tool {BASE} mm wide, in packings in common:", "",
+            lines += [f"Beside a tool {BASE} mm wide in the same rock, in packings in common:", "",
                       *generated.table(["case", "packings", *CHANGES], beside)]
         rocks = list(rocks_table(found, strengths)) if radius == TOUGH else []
         if rocks:

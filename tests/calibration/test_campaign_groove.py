@@ -35,7 +35,8 @@ def made_up(folder, seed_factor=lambda seed: 1.0):
 
 
 def block(run, values):
-    """A block of particles on a square lattice, each bonded to the one below it, but for those in the groove."""
+    """A block of particles on a square lattice, each bonded to the one below it, but for those in the groove. Those
+    of them that the tool meets or that lie right below it go twice the depth of cut away, the others half of it."""
     size = [values[name] for name in ("width", "height", "depth")]
     counts = [round(length / SPACING) for length in size]
     places = SPACING * (np.indices(counts).reshape(3, -1).T + 0.5)
@@ -46,9 +47,11 @@ def block(run, values):
     gone &= places[:, 1] > values["height"] - values["depth_of_cut"] - 1e-3
     np.savez(run / "model.npz", rock_radii=np.full(len(places), SPACING / 2), rock_fixed=places[:, 1] < SPACING,
              bonds=bonds, block=size)
+    far = gone & (np.abs(places[:, 2]) < 0.5 * values["breadth"])
+    way = values["depth_of_cut"] * (0.5 * gone + 1.5 * far)
     for number, status in enumerate((np.zeros(len(bonds)), gone[bonds].any(axis=1))):
-        np.savez(run / "snapshots" / f"{number:04d}.npz", time=float(number), stage=1, rock_positions=places,
-                 status=status.astype(np.int8))
+        np.savez(run / "snapshots" / f"{number:04d}.npz", time=float(number), stage=1, status=status.astype(np.int8),
+                 rock_positions=places + number * way[:, None] * [0.6, 0.0, 0.8])
 
 
 def test_force_at_the_sides_and_of_a_slice(tmp_path):
@@ -73,24 +76,26 @@ def test_section_of_the_groove_and_what_came_off_below_the_path(tmp_path):
         wide = round((breadth + 4e-3) / SPACING) * SPACING
         assert values["section"].value == pytest.approx(wide * 6e-3 / (breadth * 5e-3), rel=1e-6)
         assert values["overbreak"].value == pytest.approx(wide * 1e-3 / (breadth * 5e-3), rel=1e-6)
+        assert values["carried_off"].value == pytest.approx(6 / 5) and values["carried_below"].value == pytest.approx(0.2)
         assert values["thrust"].value == pytest.approx(0.5) and values["missed"].value == pytest.approx(-0.005)
         assert values["energy"].value == pytest.approx(1e-6 * (SIDES / breadth + SLICE) / 5e-3)
 
 
 def test_slower_tools_go_as_far_in_the_larger_spheres():
     slow = {(radius, case): values for (radius, case, _), (_, _, values) in groove.plan(groove.RADII).items()
-            if case in groove.SLOWER}
-    assert set(slow) == {("0.9", case) for case in groove.SLOWER}
+            if case in groove.SLOWER_ALL}
+    assert set(slow) == {("0.9", case) for case in groove.SLOWER_ALL}
     for (_, case), values in slow.items():
-        assert values["velocity"] == values["lowering_velocity"] == groove.SLOWER[case] and values["breadth"] == 0.013
+        assert values["velocity"] == values["lowering_velocity"] == groove.SLOWER_ALL[case] and values["breadth"] == 0.013
+        assert values["rock"] == (groove.GRAINY if groove.GRAINY in case else groove.ROCK)
         assert values["velocity"] * values["cut_time"] == pytest.approx(0.03)
         assert values["velocity"] * values["record_period"] == pytest.approx(4e-5)
 
 
 def test_other_tools_differ_from_the_base_by_what_they_are_for():
     plan = {(case, seed): values for (radius, case, seed), (_, _, values) in groove.plan(["0.9"]).items()}
-    for case, values in groove.OTHERS.items():
-        base = plan["13", 2]
+    for case, values in groove.OTHERS_ALL.items():
+        base = plan[groove.GRAINY_BASE if groove.GRAINY in case else groove.BASE, 2]
         assert {name: of for name, of in plan[case, 2].items() if base.get(name) != of} == values
     deep = plan["13, 10 deep", 1]
     assert deep["velocity"] * deep["cut_time"] == pytest.approx(6 * deep["depth_of_cut"])
@@ -131,6 +136,10 @@ def test_changes_are_those_of_the_same_packings(tmp_path):
     rows = dict((name, cells) for name, _, *cells in groove.changes({"6.5": found["6.5"], "13": base, "flat": {
         seed: case[seed] for seed in (2, 3)}}))
     assert set(rows) == {"flat"} and rows["flat"][0].startswith("0.1 ± 0.02 (+4 %)")
+    slow = f"{groove.GRAINY_BASE}, 2 m/s"
+    rows = dict((name, cells) for name, _, *cells in groove.changes({"13": found["13"], groove.GRAINY_BASE: base,
+                                                                     slow: case}))
+    assert set(rows) == {slow} and rows[slow][0].startswith("0.1 ± ")
 
 
 def test_the_page(tmp_path, monkeypatch):
