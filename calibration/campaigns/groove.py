@@ -280,7 +280,8 @@ def write(folder):
     cuts, strengths = measured(folder)
     lines = ["Mean ± standard error: of the packings where there are three, else of the cuts' own records, from "
              f"{BEGIN} depth of cut on. Groove over tool: section of the rock that came off over depth times breadth. "
-             "Carried off: the part of it that has gone farther than the depth of cut. Energy missed: residual of the balance over the tool's work, of the worst packing.", ""]
+             "Carried off: the part of it that has gone farther than the depth of cut. Energy missed: residual of the "
+             "balance over the tool's work, of the worst packing.", ""]
     for radius, found in cuts.items():
         lines += [f"## Spheres of {radius} mm", ""]
         ucs = strengths.get((radius, "compression", TOUGHER))
