@@ -43,7 +43,9 @@ CUT = dict(rock=ROCK, scale_factor=1.0, width=0.045, height=0.015, gravity=0.0,
            depth_of_cut=5e-3, start=0.0, approach=1e-3, cut_time=3.75e-3, background_damping=500.0,
            snapshot_period=5e-4, record_period=5e-6, report="false")
 """Six depths of way; else as in campaigns.steady_cut."""
-SLOWER = {"13, 4 m/s": 4.0, "13, 2 m/s": 2.0}
+GRAINY = "interlocked_sandstone"
+"""A rock of grains, whose toughness is that of a sandstone."""
+SLOWER = {"13, 4 m/s": 4.0, "13, 2 m/s": 2.0, f"13, {GRAINY}, 2 m/s": 2.0}
 """{case: m/s}."""
 ROCKS = {"90 and 1000 J/m2": {},
          "30 and 1000 J/m2": dict(bond_fracture_energy=30.0),
@@ -56,18 +58,14 @@ OTHERS = {
     "13, flat 1": dict(wear_flat=1e-3), "13, flat 2": dict(wear_flat=2e-3),
     "13, 10 deep": dict(depth_of_cut=0.01, width=0.075, height=0.03, depth=0.053, tooth_height=0.024,
                         tooth_width=0.016, cut_time=7.5e-3),
-    **{f"13, {rock}": ROCKS[rock] for rock in BRITTLER}}
+    **{f"13, {rock}": ROCKS[rock] for rock in BRITTLER},
+    f"13, {GRAINY}, held 25 mm below": dict(height=0.03)}
 """{case: parameters} of tools 13 mm wide that differ from those of CUT in one thing: degrees, mm of wear flat, mm of
-depth with six of them of way and two beside, rock."""
-GRAINY = "interlocked_sandstone"
+depth with six of them of way and two beside, rock, mm of rock below the path, where others have 10."""
 OF_GRAINS = {f"{name}, {GRAINY}": breadth for name, breadth in BREADTHS.items()}
-"""{case: m}: breadths in a rock of grains, whose toughness is that of a sandstone."""
-GRAINY_SLOWER = {f"13, {GRAINY}, 2 m/s": 2.0}
-GRAINY_OTHERS = {f"13, {GRAINY}, held 25 mm below": dict(height=0.03)}
-"""{case: m/s}, {case: parameters}: what else may make it break as deep as it does. 25 mm: below the path; else 10."""
-SLOWER_ALL, OTHERS_ALL = {**SLOWER, **GRAINY_SLOWER}, {**OTHERS, **GRAINY_OTHERS}
+"""{case: m}: breadths in GRAINY."""
 CASES = {"0.45": ["13", "13, flat 2"], "0.6": [*BREADTHS, *OF_GRAINS],
-         "0.9": [*BREADTHS, *OF_GRAINS, *SLOWER_ALL, *OTHERS_ALL]}
+         "0.9": [*BREADTHS, *OF_GRAINS, *SLOWER, *OTHERS]}
 """{radius: cases}."""
 LABORATORY = {"compression": (in_space.SCRIPT, "peak_stress", in_space.SIDES, dict(test="compression", speed=0.1)),
               "toughness": (in_space.NOTCHED, "fracture_toughness", in_space.NOTCHED_SIDES, {})}
@@ -80,7 +78,8 @@ QUANTITIES = {"mean force, kN": "force", "over depth and breadth, MJ/m³": "ener
               "carried off below / depth": "carried_below"}
 """{heading: quantity of of_run}."""
 CHANGES = {"force, kN": "force", "thrust, kN": "pressed", "friction, kN": "friction", "peak / mean": "peaks",
-           "groove over tool": "section", "overbreak / depth": "overbreak", "carried off below / depth": "carried_below"}
+           "groove over tool": "section", "overbreak / depth": "overbreak",
+           "carried off below / depth": "carried_below"}
 """{heading: quantity of of_run} of the table beside the tool of CUT."""
 BASE, GRAINY_BASE = "13", f"13, {GRAINY}"
 """Cases beside which the others stand, those of GRAINY beside the second."""
@@ -116,7 +115,7 @@ def named(radius, case, seed):
 def changed(case):
     """Parameters of a case other than those of CUT."""
     rock = dict(rock=GRAINY) if GRAINY in case else {}
-    other = slower(SLOWER_ALL[case]) if case in SLOWER_ALL else OTHERS_ALL.get(case, {})
+    other = slower(SLOWER[case]) if case in SLOWER else OTHERS.get(case, {})
     return {**wider({**BREADTHS, **OF_GRAINS}.get(case, BREADTHS[BASE])), **rock, **other}
 
 
