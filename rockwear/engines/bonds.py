@@ -2,7 +2,7 @@
 import math
 import numpy as np
 
-from yade import Ig2_Sphere_Sphere_ScGeom, Law2_ScGeom_JCFpmPhys_JointedCohesiveFrictionalPM, O
+from yade import Ig2_Sphere_Sphere_ScGeom, Law2_ScGeom_JCFpmPhys_JointedCohesiveFrictionalPM, O, Vector3
 
 from rockwear.engines.access import body_erased, contact_of, geometry_functor, law_functor
 from rockwear.engines.bond_log import BROKEN, INTACT, SEPARATED, BondLog, Crack
@@ -253,7 +253,17 @@ class Bonds(BondLog):
         phys.initD += shift
         return interaction.geom, phys
 
-    def contact(self, n):
+    def shear(self, numbers):
+        """What YADE turns with intact bonds and adds slip to, (k, 3) N, and how much of it a metre takes, (k,) N/m."""
+        contacts = [self._contact(n) for n in numbers.tolist()]
+        return np.array([phys.shearForce for phys in contacts]), np.array([phys.ks for phys in contacts])
+
+    def set_shear(self, numbers, shear):
+        """Set the former, (k, 3) N."""
+        for n, force in zip(numbers.tolist(), shear.tolist()):
+            self._contact(n).shearForce = Vector3(*force)
+
+    def _contact(self, n):
         """YADE's phys of the intact bond n."""
         return self.softening_bonds[n].phys if n in self.softening_bonds else self.elastic[n][1]
 

@@ -44,7 +44,7 @@ _VECTORS = {"normal": lambda contact: contact.geom.normal, "increment": lambda c
 """Vectors of a bond that looks read, and partly write, for many bonds at once: looks at single ones cost a third of
 YADE's own time."""
 _GROUPS = {"slip": ("slipped", "shear_force"), "looked_at": ("slipped", "omega", "crushed"),
-           "loose": ("strain", "slipped", "shear_force"), "limits": ("onset", "fracture"), "damage": ("omega", "kappa"),
+           "loose": ("strain", "slipped", "shear_force"), "strain": ("strain",), "limits": ("onset", "fracture"), "damage": ("omega", "kappa"),
            "forces": ("normal", "normal_force", "shear_force"), "moved": ("increment", "radius1", "radius2", "overlap"),
            **crushing.GROUPS}
 """What is read together."""
@@ -208,6 +208,7 @@ class CpmBonds(BondLog):
             for name in ("kn", "kt", "Rn", "Rt", "mu", "onset", "gone", "slip_end", "coupling"))
         # Lengths (m) of the bonds that are there.
         self.contacts, self.lengths, self.strains = {}, np.zeros(count), None
+        self.ends = self.pairs.copy()
         self.places = Places(count, vectors=_VECTORS, groups=_GROUPS, numbers=_numbers())
         self.there = _Kept(self.places, "looked_at", lambda: np.flatnonzero(self.status != SEPARATED))
         self.slipping = _Kept(self.places, "slip", lambda: np.flatnonzero(self.active & (self.status != SEPARATED)))
@@ -265,6 +266,7 @@ class CpmBonds(BondLog):
         for n in numbers.tolist():
             interaction = contact_of(*self.pairs[n].tolist())
             found.append(_Contact(interaction, interaction.geom, interaction.phys))
+            self.ends[n] = interaction.id1, interaction.id2
             self.lengths[n] = found[-1].phys.refLength
         self.contacts.update(zip(numbers.tolist(), found))
         self.places.find(numbers, found)
@@ -436,6 +438,14 @@ class CpmBonds(BondLog):
         contact = self.contacts[n]
         contact.phys.refPD += shift
         return contact.geom, contact.phys
+
+    def shear(self, numbers):
+        """What YADE turns with bonds and adds slip to, strains (k, 3), and how much of it a metre takes, (k,) 1/m."""
+        return self.places.read("strain", numbers).T, -1.0 / self.lengths[numbers]
+
+    def set_shear(self, numbers, shear):
+        """Set the former, (k, 3)."""
+        self.places.write("strain", numbers, shear.T)
 
     def softening(self):
         """(m,) from 0, a bond in its initial state, to 1, a broken one."""

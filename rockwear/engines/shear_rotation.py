@@ -1,15 +1,16 @@
 """Rotation of the shear springs of bonds that rotate fast."""
 import numpy as np
-from yade import O, Vector3
+from yade import O
 
 from rockwear.kernels.shear_rotation import shear_to_start_from, turning_rates
 from rockwear.engines.access import states
 from rockwear.engines.base import START, Engine
 from rockwear.engines.bond_log import INTACT
 
-FAST = 0.01
-"""Angle (rad) a step from which a bond counts as rotating fast. In steps of 30 us slower chips gain less than 0.2 of
-their energy a second; the default background damping takes 40 times it a second."""
+FAST = 0.003
+"""Angle (rad) a step from which a bond counts as rotating fast. Slower chips gain less than 0.2 of their energy a
+second in steps of 30 us, a hundredth in a millisecond in steps of 0.3 us; the default background damping takes it 40
+times a second, and two thirds in a millisecond."""
 SEARCH_PERIOD = 100
 """Steps between searches for such bonds."""
 
@@ -18,7 +19,7 @@ class ShearRotation(Engine):
     """Corrects YADE's rule for shear where bonds rotate fast (kernels.shear_rotation): spinning chips would gain
     energy.
 
-    bonds: engines.bonds.Bonds, in space and with shear that follows the points of contact; radii: (n,) m of the bodies
+    bonds: engines.bonds.Bonds or cpm_bonds.CpmBonds, in space and with shear that follows the points of contact; radii: (n,) m of the bodies
     0..n-1. YADE's law starts from what it writes at the beginning of a step.
     """
 
@@ -36,14 +37,10 @@ class ShearRotation(Engine):
         fast = self.fast[self.bonds.status[self.fast] == INTACT]
         if not len(fast):
             return
-        contacts = [self.bonds.contact(n) for n in fast.tolist()]
-        shear = np.array([phys.shearForce for phys in contacts])
-        stiffness = np.array([phys.ks for phys in contacts])
+        shear, stiffness = self.bonds.shear(fast)
         ends = self.bonds.ends[fast].T
         line, velocity, spins = self._motion(ends)
-        found = shear_to_start_from(shear, line, velocity, spins, self.radii[ends], stiffness, O.dt)
-        for phys, force in zip(contacts, found.tolist()):
-            phys.shearForce = Vector3(*force)
+        self.bonds.set_shear(fast, shear_to_start_from(shear, line, velocity, spins, self.radii[ends], stiffness, O.dt))
 
     def _find_fast(self):
         intact = np.flatnonzero(self.bonds.status == INTACT)

@@ -128,7 +128,7 @@ class Cut(Scene):
         self.recorder = Recorder(self.output.history(), period=max(1, self.steps_in(accuracy.record_period)))
         self.guard = EnergyGuard(work=lambda: tool.contact.work_done, floor=self._least_energy(), period=GUARD_PERIOD)
         curved = self.programme.motion.angular_velocity
-        turned_in_space = not self.in_plane and len(rock.pairs) and self.bond_law.yade_law == "JCFpm"
+        turned_in_space = not self.in_plane and len(rock.pairs)
         self._register(
             ShearRotation(bonds=self.bonds, radii=rock.radii) if turned_in_space else None,
             self.bonds, self.dashpots, tool.contact, self.rock_friction,

@@ -105,9 +105,17 @@ def test_soft_bonds_sheared_as_contacts_move_break_with_their_energy(checks):
         assert broken > 0.8 and abs(residual) < 3e-4
 
 
-def test_a_spinning_chip_gains_no_energy(checks):
+@pytest.mark.parametrize("law", ["brittle", "cohesive"])
+def test_a_spinning_chip_gains_no_energy(checks, law):
     """By YADE's rule it does: kernels.shear_rotation."""
-    gained, whole = checks["spinning"]["by YADE's rule"]
+    gained, whole = checks["spinning"][law]["by YADE's rule"]
     assert whole and gained > 0.2
-    kept, whole = checks["spinning"]["corrected"]
+    kept, whole = checks["spinning"][law]["corrected"]
     assert whole and abs(kept) < 0.005
+
+
+def test_a_pair_in_flight_gains_no_energy(checks):
+    """At 0.006 and 0.02 rad a step. It blew up cuts in a rock of grains that break."""
+    (slow, slow_kept), (fast, fast_kept) = checks["in flight"]
+    assert slow > 0.05 and fast > 10
+    assert abs(slow_kept) < 0.01 and abs(fast_kept) < 0.01
