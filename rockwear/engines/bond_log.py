@@ -28,6 +28,8 @@ class BondLog(Engine):
     def __init__(self, *, pairs, law, laws=None, clock, period=1):
         super().__init__(period=period)
         self.pairs = np.asarray(pairs)
+        # In the order in which YADE has the two bodies.
+        self.ends = self.pairs.copy()
         self.law, self.laws = law, [law] * len(self.pairs) if laws is None else laws
         self.status = np.full(len(self.pairs), INTACT, np.int8)
         self.cracks, self.broken, self.clock = [], {}, clock

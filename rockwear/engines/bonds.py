@@ -93,7 +93,7 @@ class Bonds(BondLog):
         """Find the interactions of the scene that is in O now."""
         self.functor = law_functor(Law2_ScGeom_JCFpmPhys_JointedCohesiveFrictionalPM)
         self.shear_by_radii = geometry_functor(Ig2_Sphere_Sphere_ScGeom).avoidGranularRatcheting
-        self.elastic, self.broken, self.ends = {}, {}, self.pairs.copy()
+        self.elastic, self.broken = {}, {}
         for n, (i, j) in enumerate(self.pairs.tolist()):
             if self.status[n] != SEPARATED:
                 interaction = contact_of(i, j)

@@ -1,4 +1,12 @@
-"""Bonds carried by YADE's concrete model: softening in C++, looked at from Python now and then."""
+"""Bonds carried by YADE's concrete model: softening in C++, looked at from Python now and then.
+
+C++ erases a bond that has opened to its end; if its particles meet again, that is a plain contact, by their radii
+(which must not overlap when they are bonded). YADE turns the total shear strain of a bond with the contact, but not its
+plastic part: a look takes the slip so far out of both. Of a bond with little or no shear strength left YADE takes too
+little slip, and pushes with the rest when it closes: that of loose bonds is taken out in every step. Neither damage nor
+strains are in YADE's saved scenes: `state` holds them, and `erase_separated`, at every canonical point, sets the damage
+from omega, which is all that a restart knows.
+"""
 import math
 from collections import namedtuple
 from functools import cache
@@ -44,12 +52,15 @@ _VECTORS = {"normal": lambda contact: contact.geom.normal, "increment": lambda c
 """Vectors of a bond that looks read, and partly write, for many bonds at once: looks at single ones cost a third of
 YADE's own time."""
 _GROUPS = {"slip": ("slipped", "shear_force"), "looked_at": ("slipped", "omega", "crushed"),
-           "loose": ("strain", "slipped", "shear_force"), "strain": ("strain",), "limits": ("onset", "fracture"), "damage": ("omega", "kappa"),
+           "loose": ("strain", "slipped", "shear_force"), "strain": ("strain",), "limits": ("onset", "fracture"),
+           "damage": ("omega", "kappa"),
            "forces": ("normal", "normal_force", "shear_force"), "moved": ("increment", "radius1", "radius2", "overlap"),
            **crushing.GROUPS}
 """What is read together."""
 SLIPPED, SHEAR, OMEGA, CRUSHED = slice(0, 3), slice(3, 6), 3, 4
 """Rows of the groups "slip" and "looked_at"."""
+_STATE = "dissipated", "by_slip", "slip_taken", "omega", "active"
+"""What a checkpoint holds as it is."""
 
 
 @cache
@@ -186,13 +197,6 @@ class CpmBonds(BondLog):
     bond that opens to its end stays a contact, without cohesion, as long as its particles are nearer than when it was
     made, and books its slip as one that slip has broken.
 
-    C++ erases a bond that has opened to its end; if its particles meet again, that is a plain contact, by their radii
-    (which must not overlap when they are bonded). YADE turns the total shear strain of a bond with the contact, but not
-    its plastic part: a look takes the slip so far out of both. Of a bond with little or no shear strength left YADE
-    takes too little slip, and pushes with the rest when it closes: that of loose bonds is taken out in every step.
-    Neither damage nor strains are in YADE's saved scenes: `state` holds them, and `erase_separated`, at every canonical
-    point, sets the damage from omega, which is all that a restart knows.
-
     period: steps between two looks; 1: looks and samples in every step. The engine itself is visited in every step.
     """
 
@@ -208,7 +212,6 @@ class CpmBonds(BondLog):
             for name in ("kn", "kt", "Rn", "Rt", "mu", "onset", "gone", "slip_end", "coupling"))
         # Lengths (m) of the bonds that are there.
         self.contacts, self.lengths, self.strains = {}, np.zeros(count), None
-        self.ends = self.pairs.copy()
         self.places = Places(count, vectors=_VECTORS, groups=_GROUPS, numbers=_numbers())
         self.there = _Kept(self.places, "looked_at", lambda: np.flatnonzero(self.status != SEPARATED))
         self.slipping = _Kept(self.places, "slip", lambda: np.flatnonzero(self.active & (self.status != SEPARATED)))
@@ -252,9 +255,8 @@ class CpmBonds(BondLog):
         self._prepare()
 
     def _take_up(self, numbers):
-        for array in (self.dissipated, self.by_slip, self.slip_taken, self.omega, self.crushing.strains):
-            array[numbers] = 0.0
-        self.active[numbers] = False
+        for array in (self.dissipated, self.by_slip, self.slip_taken, self.omega, self.active, self.crushing.strains):
+            array[numbers] = 0
         self._follow(numbers)
         # Not of bonds that have left: their memory is no longer theirs.
         self.rising = self._weakened(np.zeros(0, int))
@@ -405,8 +407,7 @@ class CpmBonds(BondLog):
 
     def _log(self, n):
         """Add a bond that breaks now to the cracks."""
-        interaction = self.contacts[n].interaction
-        first, second = O.bodies[interaction.id1], O.bodies[interaction.id2]
+        first, second = (O.bodies[end] for end in self.ends[n].tolist())
         if self.status[n] != INTACT or first is None or second is None:
             return
         place, line = 0.5 * (first.state.pos + second.state.pos), second.state.pos - first.state.pos
@@ -465,14 +466,14 @@ class CpmBonds(BondLog):
 
     def state(self):
         there = np.flatnonzero(self.status != SEPARATED)
-        return {**super().state(), "dissipated": self.dissipated.copy(), "by_slip": self.by_slip.copy(),
-                "slip_taken": self.slip_taken.copy(), "omega": self.omega.copy(), "active": self.active.copy(),
+        return {**super().state(), **{name: getattr(self, name).copy() for name in _STATE},
                 "crushed": self.crushing.strains.copy(),
                 "strain": self.places.read("strain", there).T, "plastic_strain": self.places.read("slipped", there).T}
 
     def restore(self, state):
         super().restore(state)
-        for name in ("dissipated", "by_slip", "slip_taken", "omega", "active"):
+        for name in _STATE:
             setattr(self, name, state[name].copy())
-        self.crushing.strains, there = state["crushed"].copy(), np.flatnonzero(self.status != SEPARATED)
+        self.crushing.strains = state["crushed"].copy()
+        there = np.flatnonzero(self.status != SEPARATED)
         self.strains = there, self.omega[there], state["strain"].T, state["plastic_strain"].T, state["crushed"][there]

@@ -19,8 +19,8 @@ class ShearRotation(Engine):
     """Corrects YADE's rule for shear where bonds rotate fast (kernels.shear_rotation): spinning chips would gain
     energy.
 
-    bonds: engines.bonds.Bonds or cpm_bonds.CpmBonds, in space and with shear that follows the points of contact; radii: (n,) m of the bodies
-    0..n-1. YADE's law starts from what it writes at the beginning of a step.
+    bonds: engines.bonds.Bonds or cpm_bonds.CpmBonds, in space and with shear that follows the points of contact;
+    radii: (n,) m of the bodies 0..n-1. YADE's law starts from what it writes at the beginning of a step.
     """
 
     name = "shear_rotation"
