@@ -210,8 +210,7 @@ class CpmBonds(BondLog):
         self.kn, self.kt, self.Rn, self.Rt, self.mu, self.onset, self.gone, self.slip_end, self.coupling = (
             np.array([getattr(law, name) for law in self.laws])
             for name in ("kn", "kt", "Rn", "Rt", "mu", "onset", "gone", "slip_end", "coupling"))
-        # Lengths (m) of the bonds that are there.
-        self.contacts, self.lengths, self.strains = {}, np.zeros(count), None
+        self.contacts, self.lengths, self.strains = {}, np.zeros(count), None  # lengths: m, of the bonds that are there
         self.places = Places(count, vectors=_VECTORS, groups=_GROUPS, numbers=_numbers())
         self.there = _Kept(self.places, "looked_at", lambda: np.flatnonzero(self.status != SEPARATED))
         self.slipping = _Kept(self.places, "slip", lambda: np.flatnonzero(self.active & (self.status != SEPARATED)))
