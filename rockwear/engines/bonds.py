@@ -254,18 +254,15 @@ class Bonds(BondLog):
         return interaction.geom, phys
 
     def shear(self, numbers):
-        """What YADE turns with intact bonds and adds slip to, (k, 3) N, and how much of it a metre takes, (k,) N/m."""
-        contacts = [self._contact(n) for n in numbers.tolist()]
-        return np.array([phys.shearForce for phys in contacts]), np.array([phys.ks for phys in contacts])
+        """What YADE turns with intact bonds and adds slip to, (k, 3) N, how much of it a metre of slip takes, (k,) N/m,
+        and a function that sets it."""
+        contacts = [self.softening_bonds[n].phys if n in self.softening_bonds else self.elastic[n][1]
+                    for n in numbers.tolist()]
 
-    def set_shear(self, numbers, shear):
-        """Set the former, (k, 3) N."""
-        for n, force in zip(numbers.tolist(), shear.tolist()):
-            self._contact(n).shearForce = Vector3(*force)
-
-    def _contact(self, n):
-        """YADE's phys of the intact bond n."""
-        return self.softening_bonds[n].phys if n in self.softening_bonds else self.elastic[n][1]
+        def set_to(shear):
+            for phys, force in zip(contacts, shear.tolist()):
+                phys.shearForce = Vector3(*force)
+        return np.array([phys.shearForce for phys in contacts]), np.array([phys.ks for phys in contacts]), set_to
 
     def softening(self):
         """(m,) from 0, a bond in its initial state, to 1, a broken one."""

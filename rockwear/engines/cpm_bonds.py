@@ -440,12 +440,10 @@ class CpmBonds(BondLog):
         return contact.geom, contact.phys
 
     def shear(self, numbers):
-        """What YADE turns with bonds and adds slip to, strains (k, 3), and how much of it a metre takes, (k,) 1/m."""
-        return self.places.read("strain", numbers).T, -1.0 / self.lengths[numbers]
-
-    def set_shear(self, numbers, shear):
-        """Set the former, (k, 3)."""
-        self.places.write("strain", numbers, shear.T)
+        """What YADE turns with bonds and adds slip to, strains (k, 3), how much of it a metre of slip takes, (k,) 1/m,
+        and a function that sets it."""
+        return (self.places.read("strain", numbers).T, -1.0 / self.lengths[numbers],
+                lambda shear: self.places.write("strain", numbers, shear.T))
 
     def softening(self):
         """(m,) from 0, a bond in its initial state, to 1, a broken one."""

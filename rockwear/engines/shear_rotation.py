@@ -37,10 +37,10 @@ class ShearRotation(Engine):
         fast = self.fast[self.bonds.status[self.fast] == INTACT]
         if not len(fast):
             return
-        shear, stiffness = self.bonds.shear(fast)
+        shear, stiffness, set_shear = self.bonds.shear(fast)
         ends = self.bonds.ends[fast].T
         line, velocity, spins = self._motion(ends)
-        self.bonds.set_shear(fast, shear_to_start_from(shear, line, velocity, spins, self.radii[ends], stiffness, O.dt))
+        set_shear(shear_to_start_from(shear, line, velocity, spins, self.radii[ends], stiffness, O.dt))
 
     def _find_fast(self):
         intact = np.flatnonzero(self.bonds.status == INTACT)
