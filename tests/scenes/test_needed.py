@@ -11,6 +11,8 @@ CASES = {
     "cold": ("cutting", {**SMALL, **COLD}), "cold, without wear": ("cutting", {**SMALL, **COLD, **STILL}),
     "segments": ("cutting", {**SMALL, **COLD, "tool": "segments"}),
     "heat, segments": ("cutting", {**SMALL, "tool": "segments"}), "space": ("cutting_3d", BLOCK),
+    "space, concrete model": ("cutting_3d", {**{name: v for name, v in BLOCK.items() if name not in ("Rn", "Rt")},
+                                             "bond_law": "coulomb", "bond_tension": 1e6}),
     "triangles": ("cutting_3d", {**BLOCK_OF_TRIANGLES, "tool": "triangles"})}
 OF_HEAT = {"Heat", "HeatNetwork", "ParticleBody", "FacetBody", "Expansion"}
 
@@ -53,7 +55,8 @@ def test_an_engine_is_made_where_its_physics_is(found):
     assert sorted(found["cold, without wear"]["engines"]) == sorted(always)
     assert set(found["cold"]["engines"]) - set(always) == {"wear_profile", "background_damping"}
     assert set(found["heat and expansion"]["engines"]) - set(found["cold"]["engines"]) == {"heat", "expansion"}
-    assert "shear_rotation" in found["space"]["engines"]
+    for case in ("space", "space, concrete model"):
+        assert "shear_rotation" in found[case]["engines"]
     for there in found.values():
         assert "path_follower" not in there["engines"]
         # An engine that has been made is one of the loop: none is made to lie about.
