@@ -26,10 +26,10 @@ class RunFolder:
     def _find_snapshots(self):
         paths = sorted((self.path / "snapshots").glob("*.npz"))
         found = [(path, *read_arrays(path, "time", "stage").values()) for path in paths]
-        # A run that ends with a stage is shown twice at the same time, in the stage and after the run: what is there at
-        # its end counts, for wear comes in between.
+        # A run that ends with a stage is shown twice at the same time, after the stage and after the run. What is there
+        # at the end of the run counts, for wear comes in between.
         new = [k for k in range(len(found)) if k == 0 or found[k][1] != found[k - 1][1]]
-        self._paths = [found[k - 1][0] for k in [*new[1:], len(found)]] if new else []
+        self._paths = [found[k][0] for k in new[:-1]] + paths[-1:]
         self.times = np.array([found[k][1] for k in new], float)
         self.stages = np.array([found[k][2] for k in new], int)
         self._first = self.snapshot(0) if new else {}
