@@ -147,8 +147,7 @@ def of_run(run):
     distance = run.parameter("velocity") * (time - time[0])
     begin = BEGIN * depth
     found, _ = of_forces(distance, cutting, thrust, friction, depth=depth, begin=begin)
-    (above, below), (gone_above, gone_below) = (broken(run, begin, float(distance[-1]) - depth, than)
-                                                for than in (0.0, depth))
+    (above, below), (gone_above, gone_below) = broken(run, begin, float(distance[-1]) - depth, farther=(0.0, depth))
     tool = depth * breadth
     energy = run.balances["energy"]
     others = {"section": (above + below) / tool, "overbreak": below / tool,
@@ -159,14 +158,15 @@ def of_run(run):
 
 
 def broken(run, begin, end, farther):
-    """(above, below) the tool's path: m2 of rock in a section across the cut that has come off between `begin` and
-    `end` m of way and gone `farther` (m) than that."""
+    """[(above, below) the tool's path]: m2 of rock in a section across the cut that has come off between `begin` and
+    `end` m of way, and gone at least as far as each of `farther` (m)."""
     first, height = run.snapshot(0)["rock_positions"], run.parameter("height") - run.parameter("depth_of_cut")
-    gone = np.linalg.norm(run.snapshot(-1)["rock_positions"] - first, axis=1) >= farther
-    here = off(run) & gone & (first[:, 0] > begin) & (first[:, 0] < end)
+    gone = np.linalg.norm(run.snapshot(-1)["rock_positions"] - first, axis=1)
+    here = off(run) & (first[:, 0] > begin) & (first[:, 0] < end)
     volume = run.parameter("width") * run.parameter("height") * run.parameter("depth") / len(first)
     over = first[:, 1] > height
-    return tuple(np.count_nonzero(here & part) * volume / (end - begin) for part in (over, ~over))
+    return [tuple(np.count_nonzero(here & (gone >= least) & part) * volume / (end - begin) for part in (over, ~over))
+            for least in farther]
 
 
 def off(run):
@@ -222,7 +222,7 @@ def rows(found):
 
 
 def changes(found):
-    """Rows of the table of a radius: what each case changes in the packings that BASE has, too."""
+    """Rows of the table of a radius: what each case changes in the packings that its base has, too."""
     for name, each in found.items():
         beside = found.get(GRAINY_BASE if GRAINY in name else BASE, {})
         seeds = each.keys() & beside.keys() if name not in {**BREADTHS, **OF_GRAINS} else ()

@@ -247,16 +247,22 @@ def soft(seed):
     return len(bonds.cracks) / len(bonds.pairs), (energy() - before) / before
 
 
+def chip(places, radius, density):
+    """Free spheres that overlap, in the form that yade_scene.put_rock takes."""
+    count = len(places)
+    masses = np.full(count, density * 4 / 3 * math.pi * radius**3)
+    return SimpleNamespace(count=count, positions=places, radii=np.full(count, radius), masses=masses,
+                           inertias=0.4 * masses * radius**2, fixed=np.zeros(count, bool), side=np.zeros(count, int),
+                           pairs=contacts(places, np.full(count, radius), 0.0))
+
+
 def spinning(corrected, law):
     """A chip of four spheres, pressed together and bonded so, that spins about a slanting axis and swings undamped, as
     soft and fast as in [Rojek 2003, ch. 13]. -> energy gained over that put in, after 20 ms; whether all bonds are
     there."""
     radius, angular_velocity, step = 13.5e-3, np.array([900.0, 1000.0, 1500.0]), 3e-5
     places = 0.95 * radius / math.sqrt(2) * np.array([(1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1)])
-    masses = np.full(4, 2500 * 4 / 3 * math.pi * radius**3)
-    rock = SimpleNamespace(count=4, positions=places, radii=np.full(4, radius), masses=masses,
-                           inertias=0.4 * masses * radius**2, fixed=np.zeros(4, bool), side=np.zeros(4, int),
-                           pairs=contacts(places, np.full(4, radius), 0.0))
+    rock = chip(places, radius, density=2500)
     bonds = bonded(rock, law, ratcheting_free=False)
     chance = np.random.default_rng(1)
     for body, place in zip(O.bodies, places):
@@ -276,10 +282,8 @@ def in_flight(corrected, spin):
     """Two spheres of 0.9 mm, bonded, that spin (rad/s) and roll on each other in flight, in steps and with springs of a
     groove in sandstone. -> energy gained over that put in, after 1 ms."""
     radius = 9e-4
-    places, masses = radius * np.array([(-0.999, 0, 0), (0.999, 0, 0)]), np.full(2, 7.94e-6)
-    rock = SimpleNamespace(count=2, positions=places, radii=np.full(2, radius), masses=masses,
-                           inertias=0.4 * masses * radius**2, fixed=np.zeros(2, bool), side=np.zeros(2, int),
-                           pairs=np.array([[0, 1]]))
+    places = radius * np.array([(-0.999, 0, 0), (0.999, 0, 0)])
+    rock = chip(places, radius, density=2600)
     law = Cohesive(kn=1.85e7, kt=2.86e6, mu=MU, bond_tension=1e6, bond_cohesion=1e6, bond_fracture_energy=1e5)
     bonds = bonded(rock, law, looks=10, ratcheting_free=False)
     angular_velocity, chance = spin * np.array([0.5, 0.6, 0.62]), np.random.default_rng(1)
