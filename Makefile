@@ -11,7 +11,7 @@ TO_LINT := python3-flake8
 .DEFAULT_GOAL := help
 .PHONY: help setup setup-sweep setup-test run test test-kernels validate bench fidelity campaigns campaign-wear \
         campaign-uniaxial campaign-grains campaign-rocks campaign-steady campaign-worn campaign-granular \
-        campaign-slow campaign-toughness campaign-groove lint clean
+        campaign-slow campaign-toughness campaign-groove campaign-dredging lint clean
 
 # $(call install,packages,modules): the missing packages, where there is apt-get; then each module must be found.
 define install
@@ -100,6 +100,9 @@ campaign-toughness: setup-sweep ## toughness of four rocks over the size of the 
 
 campaign-groove: setup-sweep ## cuts in space by tools of three breadths: what their sides add (three hours; resumes)
 	$(PYTHON) -m calibration.campaigns.groove $(OUT)/campaign-groove $(WHERE)
+
+campaign-dredging: setup-sweep ## three turns of a dredge pick at the sources' discs, and their errors (hours; resumes)
+	$(PYTHON) -m calibration.campaigns.dredging $(OUT)/campaign-dredging $(WHERE)
 
 lint: ## check the code with flake8
 	$(call install,$(TO_LINT),flake8)
