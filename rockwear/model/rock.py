@@ -20,9 +20,9 @@ from rockwear.model.cache import cached
 
 TILE = 8000
 """Particles above which a specimen is put together from periodic tiles."""
-ORDERED = 8000
-"""Particles above which a packing is ordered along a curve: a step of YADE then takes 0.7 of the time
-(calibration/results/scale.md). Below, its order is the one that all results so far have."""
+ORDERED = 3000
+"""Particles above which a packing is ordered along a curve: a step of YADE then takes 0.9 to 0.7 of the time
+(calibration/results/scale.md). With fewer no difference is seen."""
 NEVER_TURNS = 1e9
 """Moment of inertia of particles that do not turn, over their own."""
 SCATTER_LIMITS = 0.05, 5.0
