@@ -12,7 +12,7 @@ CASES = {
     "segments": ("cutting", {**SMALL, **COLD, "tool": "segments"}),
     "heat, segments": ("cutting", {**SMALL, "tool": "segments"}), "space": ("cutting_3d", BLOCK),
     "space, concrete model": ("cutting_3d", {**{name: v for name, v in BLOCK.items() if name not in ("Rn", "Rt")},
-                                             "bond_law": "coulomb", "bond_tension": 1e6}),
+                                             "bond_law": "cohesive", "bond_tension": 1e6}),
     "triangles": ("cutting_3d", {**BLOCK_OF_TRIANGLES, "tool": "triangles"})}
 OF_HEAT = {"Heat", "HeatNetwork", "ParticleBody", "FacetBody", "Expansion"}
 
