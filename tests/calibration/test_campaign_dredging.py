@@ -31,8 +31,9 @@ def test_runs_differ_by_what_their_case_says_alone():
     assert len({folder for folder, _ in runs.values()}) == len(runs)
     assert all(f"--{name} " in known for _, values in runs.values() for name in values)
     window = runs["window", 2][1]
-    for case, differs in dredging.FIRST.items():
-        assert runs[case, 2][1] == {**window, **differs}
+    for case, (differs, packings, beside) in dredging.FIRST.items():
+        assert runs[case, 2][1] == {**window, **differs} and (case, packings) in runs
+        assert beside is None or beside in dredging.FIRST
     slab = sum(window[f"window_{side}"] for side in ("behind", "ahead")) / 16
     assert runs[dredging.REFERENCE, 1][1]["window_ahead"] > 2 * window["window_ahead"] and slab > 2 * 1.5e-3
 
@@ -75,5 +76,5 @@ def test_the_page_is_of_the_runs_that_exist(tmp_path):
             "parameters": {"ambient_temperature": 283.0}}), encoding="utf-8")
     assert dredging.main(tmp_path, ["--read"]) == 0
     page = (tmp_path / "dredging.md").read_text(encoding="utf-8")
-    assert "| long window | 5 | 200 ± 0 |" in page and "| window | 0.50 ± 0.00 |" in page
+    assert "| long window | 5 | 200 ± 0 |" in page and "| window | long window | 0.50 ± 0.00 |" in page
     assert "Three turns" not in page and "4 times" not in page
