@@ -71,9 +71,11 @@ def plan(words):
     if "first" in words:
         cases = [(number, case, seed) for number, (case, (_, packings, _)) in enumerate(FIRST.items())
                  for seed in range(1, 1 + packings)]
+        # As large a part of each case as of the others is there at any time.
+        cases.sort(key=lambda one: one[2] / FIRST[one[1]][1])
         found.update({(case, seed): (f"first-{number}-{seed}", dict(
             {**WINDOW, **QUIET, **FIRST[case][0]}, cut_time=FIRST_TIME, cycles=1, seed=seed))
-            for number, case, seed in sorted(cases, key=lambda one: one[2])})
+            for number, case, seed in cases})
     return found
 
 
