@@ -1,7 +1,5 @@
 """The life cycle of every scene: stages of steps, reproducible states, checkpoints."""
-import tempfile
 from abc import ABC, abstractmethod
-from pathlib import Path
 
 from yade import InsertionSortCollider, O, utils
 
@@ -9,8 +7,6 @@ from rockwear.engines import access, base
 
 NEVER = 2**62
 """Steps that no run has."""
-LAID_OUT = 10
-"""Canonical points between which contacts stay where they are in memory."""
 
 
 class Scene(ABC):
@@ -96,23 +92,6 @@ class Scene(ABC):
         """Run to the next canonical point. Raises what an engine raised, RunEnded among it."""
         base.run(min(self.chunk, self.stages[self.stage][1] - self.step))
         self.canonical()
-        if self.step % (LAID_OUT * self.chunk) == 0:
-            self.lay_out()
-
-    def lay_out(self):
-        """Lay YADE's scene out in memory anew, as if it had been saved and loaded, contacts in the order of their
-        particles.
-
-        Contacts come and go, and YADE's loop over them would jump about in memory more and more.
-        """
-        state = self.state()
-        O.interactions.serializeSorted = True
-        with tempfile.TemporaryDirectory() as folder:
-            file = Path(folder, "scene.yade")
-            access.save(file)
-            O.load(str(file))
-        O.interactions.serializeSorted = False
-        self._take_up(state)
 
     def canonical(self):
         """Bring YADE into the one state that a saved and loaded scene has too: no half-found contacts, fresh bounds.
@@ -160,10 +139,6 @@ class Scene(ABC):
         self._make_engines()
         self.stage, self.clock = int(state["stage"]), float(state["clock"])
         self.first_iteration = int(state["first_iteration"])
-        self._take_up(state)
-
-    def _take_up(self, state):
-        """The scene of this state has been loaded."""
         self._restore_engines(state)
         self._connect()
         for engine in self.engines:
