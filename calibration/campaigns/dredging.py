@@ -17,12 +17,11 @@ import numpy as np
 from scipy.integrate import trapezoid
 
 from calibration import generated
-from calibration.campaigns.runs import Runs, command_line, wait_for
+from calibration.campaigns.runs import Runs, command_line, existing, wait_for
 from rockwear.kernels.analytic import diffusivity, half_space_under_flux
 from rockwear.report import palette, plots
-from rockwear.report.folder import RunFolder
 
-SCRIPT = "yade_scripts/dredge_pick.py"
+SCRIPT, PARTS = "yade_scripts/dredge_pick.py", ("turns", "first")
 WINDOW = dict(scale_factor=1, window_behind=0.06, window_ahead=0.14, time_step_fraction=0.95)
 ROCK_2003 = dict(kt=20e9, Rt=1e6, mu=0.839, hardness_table="MET91", wear_coefficient=0.01128)
 WORN_2003 = dict(ROCK_2003, wear_acceleration=7000, hardness_temperature=293)
@@ -77,12 +76,6 @@ def plan(words):
             {**WINDOW, **QUIET, **FIRST[case][0]}, cut_time=FIRST_TIME, cycles=1, seed=seed))
             for number, case, seed in cases})
     return found
-
-
-def existing(folder, words):
-    """{(name, seed): RunFolder} of the runs of a plan that have ended."""
-    return {key: RunFolder(folder / name) for key, (name, _) in plan(words).items()
-            if (folder / name / "summary.json").exists()}
 
 
 def first_tables(found):
@@ -171,9 +164,9 @@ def figure(found):
     return drawn
 
 
-def write(folder, words):
+def write(folder):
     """Tables and figure of the runs that exist. -> the tables, in Markdown."""
-    found = existing(folder, words)
+    found = existing({key: folder / name for key, (name, _) in plan(PARTS).items()})
     lines = ["Mean ± standard error over packings."]
     if any(name in TURNS for name, _ in found):
         lines += ["", "## Three turns", "", *turn_tables(found)]
@@ -192,11 +185,9 @@ def main(folder, words, **where):
         with Runs(folder, keep=True, **where) as runs:
             jobs = {key: runs.start(name, SCRIPT, **values) for key, (name, values) in plan(parts).items()}
             failed = wait_for(jobs, lambda key, run: "{}, packing {}".format(*key))
-    print(write(folder, PARTS))
+    print(write(folder))
     return failed
 
-
-PARTS = "turns", "first"
 
 if __name__ == "__main__":
     place, words, where = command_line(__spec__.name, PARTS)

@@ -17,11 +17,10 @@ import matplotlib
 from calibration import generated
 from calibration.campaigns import grains_figures as figures
 from calibration.campaigns import grains_tables as tables
-from calibration.campaigns.runs import Runs, command_line, wait_for
+from calibration.campaigns.runs import Runs, command_line, existing, wait_for
 from calibration.campaigns.uniaxial_tables import write_csv
 from rockwear.model import rock_file
 from rockwear.report import plots
-from rockwear.report.folder import RunFolder
 from rockwear.scenes.parameters import OF_ROCK
 
 ROCK = "hawkesbury"
@@ -114,7 +113,7 @@ CAMPAIGNS = "calibrated", "study"
 def found(folder):
     """{(parameter, value, test, seed): RunFolder} of all runs that exist."""
     places = {key: folder / place for campaign in CAMPAIGNS for key, (place, *_) in planned(campaign).items()}
-    return {key: RunFolder(place) for key, place in places.items() if (place / "summary.json").exists()}
+    return existing(places)
 
 
 def write(folder):

@@ -16,9 +16,8 @@ import matplotlib
 import numpy as np
 
 from calibration import generated
-from calibration.campaigns.runs import Runs, command_line, wait_for
+from calibration.campaigns.runs import Runs, command_line, existing, wait_for
 from rockwear.report import palette, plots
-from rockwear.report.folder import RunFolder
 
 UNIAXIAL, CONFINED, TOUGHNESS = (f"yade_scripts/{name}.py" for name in ("uniaxial", "triaxial", "toughness"))
 CONFINED_AT = 10e6
@@ -154,7 +153,7 @@ def measured(folder, campaign):
 
 def _of_packing(folder, campaign, case, rock, seed):
     places = {test: folder / campaign / folder_of(case, test, seed) for test in tests(campaign, rock, seed)}
-    runs = {test: RunFolder(place) for test, place in places.items() if (place / "summary.json").exists()}
+    runs = existing(places)
     unconfined, tension = runs.get("confined 0"), runs.get("tension")
     if unconfined is None or tension is None:
         return None

@@ -309,6 +309,11 @@ def finished(folder, values):
         name in parameters and _same(parameters[name], value) for name, value in values.items())
 
 
+def existing(places):
+    """{key: RunFolder} of the folders {key: path} that hold a run that has ended."""
+    return {key: RunFolder(place) for key, place in places.items() if (place / "summary.json").exists()}
+
+
 def _path(name, value):
     return rock_file.find(value) if name == "rock" else Path(value)
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from calibration import generated
 from calibration.campaigns import steady_cut_cases as cases, steady_cut_numbers as numbers
-from calibration.campaigns.runs import Runs, command_line, wait_for
+from calibration.campaigns.runs import Runs, command_line, existing, wait_for
 from rockwear.kernels import cutting_theory, steady_record
 from rockwear.model import rock_file
 from rockwear.report import plots
@@ -158,8 +158,7 @@ def main(folder, read=False, **where):
     failed, tools = 0 if read else start(folder, **where), []
     for number, tool in enumerate(shapes(folder) if not failed else ()):
         places = {seed: folder / f"tool_{number}-{seed}" for seed in SEEDS}
-        each = {seed: numbers.of_run(RunFolder(place)) for seed, place in places.items()
-                if (place / "summary.json").exists()}
+        each = {seed: numbers.of_run(run) for seed, run in existing(places).items()}
         if each:
             tools.append({**tool, "each": each, **{
                 name: numbers.over_packings([one[name] for one in each.values()]) for name in QUANTITIES}})

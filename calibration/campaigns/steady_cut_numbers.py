@@ -6,11 +6,11 @@ import numpy as np
 
 from calibration.campaigns.steady_cut_cases import (
     BASE, CUT, CUTS, MORE_SEEDS, PULLED, changed_from, rock_of, slug)
+from calibration.campaigns.runs import existing
 from rockwear.kernels import steady_record
 from rockwear.kernels.fragments import chip_length
 from rockwear.kernels.groove import groove_results
 from rockwear.kernels.steady_record import Measured
-from rockwear.report.folder import RunFolder
 
 BEGIN = 3
 """Depths of cut that do not count: the tool has passed the slope at which it begins, which is 2.7 long."""
@@ -33,7 +33,7 @@ COLUMNS = {"specific energy / UCS": "energy", "mean Fc, kN/m": "force", "peak / 
 def runs_of(folder, *words):
     """{seed: RunFolder} of the packings that exist."""
     places = {seed: folder / slug(*words, seed) for seed in MORE_SEEDS}
-    return {seed: RunFolder(place) for seed, place in places.items() if (place / "summary.json").exists()}
+    return existing(places)
 
 
 def strengths(folder, rock, test="compression"):

@@ -16,10 +16,9 @@ import matplotlib
 from calibration import generated
 from calibration.campaigns import uniaxial_figures as figures
 from calibration.campaigns import uniaxial_tables as tables
-from calibration.campaigns.runs import Runs, command_line, wait_for
+from calibration.campaigns.runs import Runs, command_line, existing, wait_for
 from calibration.campaigns.uniaxial_tables import TESTS
 from rockwear.report import plots
-from rockwear.report.folder import RunFolder
 
 SCRIPT = "yade_scripts/uniaxial.py"
 
@@ -119,7 +118,7 @@ def found(folder, campaign):
     cases, _, seeds = CAMPAIGNS[campaign]
     places = {(case, test, seed): folder / campaign / folder_of(case, test, seed)
               for case in cases for test in TESTS for seed in seeds}
-    return {key: RunFolder(place) for key, place in places.items() if (place / "summary.json").exists()}
+    return existing(places)
 
 
 def slope_cases():
