@@ -41,7 +41,10 @@ FIRST = {
     "10 times": (dict(time_scale=10), 5, REFERENCE),
     "step 0.5 of the critical one, not 0.95": (dict(time_step_fraction=0.5), 5, REFERENCE),
     "discs 4 times as coarse": (COARSE, 40, COARSE_REFERENCE),
-    COARSE_REFERENCE: ({**LONG, **COARSE}, 40, REFERENCE)}
+    COARSE_REFERENCE: ({**LONG, **COARSE}, 40, REFERENCE),
+    "coarse, mechanics 2.5 times as fast": (dict(COARSE, time_scale=2.5), 40, COARSE_REFERENCE),
+    "coarse, 10 times": (dict(COARSE, time_scale=10), 40, COARSE_REFERENCE),
+    "coarse, backing of 40 mm, not 60": (dict(COARSE, backing=0.04), 40, COARSE_REFERENCE)}
 """{case: (what differs, packings, the case beside which it stands)} of the first part of the arc, with the rock and the
 pick of [Rojek 2014]."""
 HOTTEST = 0.01
