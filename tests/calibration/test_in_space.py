@@ -74,6 +74,38 @@ def test_energies_and_grains_can_be_given(run, tmp_path):
     assert space.measured["fracture_toughness"]["packings"] == in_space.NOTCHES
 
 
+@pytest.mark.parametrize("power, at, most", [(0.5, 16, 2), (0.35, 16, 3), (0.7, 200, 3), (0.25, 3, 4)])
+def test_the_fracture_energy_is_changed_until_the_toughness_is_there(run, monkeypatch, tmp_path, power, at, most):
+    """K = 0.6 MPa sqrt(m) (G / 60 J/m2)^power, where the plane has `at`."""
+    path = tmp_path / "own.json"
+    data = json.loads(rock_file.find("medium_sandstone").read_text(encoding="utf-8"))
+    data["plane"]["parameters"]["bond_fracture_energy"] = at
+    path.write_text(json.dumps(data), encoding="utf-8")
+    energies = []
+
+    def powers(laboratory, x, seeds):
+        energies.append(laboratory.parameters(x)["bond_fracture_energy"])
+        return np.array([0.6e6 * (energies[-1] / 60)**power * (1 + 0.01 * (seed % 3 - 1)) for seed in seeds])
+    monkeypatch.setattr(BlockLaboratory, "toughness", powers)
+    code, *_ = run("--rock", path)
+    space = rock_file.read(tmp_path / "out" / "rock.json", OF_ROCK).parts["space"]
+    assert code == 0 and energies[0] == at and len(energies) - 1 <= most
+    assert space.measured["fracture_toughness"]["mean"] == pytest.approx(0.6e6, rel=0.05)
+    assert space.parameters["bond_fracture_energy"] == energies[-1]
+    assert f"| {energies[-1]:.4g} | 0." in (tmp_path / "out" / "in_space.md").read_text(encoding="utf-8")
+
+
+def test_a_toughness_that_no_energy_changes_ends_after_few_trials(run, monkeypatch, tmp_path):
+    energies = []
+    monkeypatch.setattr(BlockLaboratory, "toughness", lambda laboratory, x, seeds: energies.append(
+        laboratory.parameters(x)["bond_fracture_energy"]) or np.full(len(seeds), 1.2e6))
+    code, *_ = run("--rock", "medium_sandstone")
+    page = (tmp_path / "out" / "in_space.md").read_text(encoding="utf-8")
+    assert code == 3 and "fracture_toughness is 1.2 MPa sqrt(m) ±" in page
+    assert len(energies) == in_space.TEARS + 1
+    assert all(1 / in_space.LARGEST <= b / a < 1 for a, b in zip(energies, energies[1:-1]))
+
+
 def test_a_toughness_that_one_packing_alone_tells_is_left_out(run, monkeypatch, tmp_path):
     monkeypatch.setattr(BlockLaboratory, "toughness", lambda *_: np.array([np.nan, 0.6e6, np.nan]))
     code, *_ = run("--rock", "medium_sandstone")
