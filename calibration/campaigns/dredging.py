@@ -44,7 +44,8 @@ FIRST = {
     COARSE_REFERENCE: ({**LONG, **COARSE}, 40, REFERENCE),
     "coarse, mechanics 2.5 times as fast": (dict(COARSE, time_scale=2.5), 40, COARSE_REFERENCE),
     "coarse, 10 times": (dict(COARSE, time_scale=10), 40, COARSE_REFERENCE),
-    "coarse, backing of 40 mm, not 60": (dict(COARSE, backing=0.04), 40, COARSE_REFERENCE)}
+    "coarse, backing of 40 mm, not 60": (dict(COARSE, backing=0.04), 40, COARSE_REFERENCE),
+    "coarse, step 0.5 of the critical one": (dict(COARSE, time_step_fraction=0.5), 40, COARSE_REFERENCE)}
 """{case: (what differs, packings, the case beside which it stands)} of the first part of the arc, with the rock and the
 pick of [Rojek 2014]."""
 HOTTEST = 0.01
@@ -129,9 +130,10 @@ def turn_rows(run):
         cut = {name: column[stage == 2 * turn - 1] for name, column in columns.items()}
         made = {name: cut[name][-1] - past for name, past in before.items()}
         before = {name: cut[name][-1] for name in before}
+        rise = by_hand(run, made["pick_friction_heat"])
         yield [turn, *(f"{1e-3 * cut[name].mean():.3g}" for name in ("cutting_force", "thrust_force")),
                f"{1e-3 * made['tool_friction']:.3g}", f"{1e-3 * made['pick_friction_heat']:.3g}",
-               f"{cut['tool_temperature_hot'].max() - water:.3g}", f"{by_hand(run, made['pick_friction_heat']):.3g}",
+               f"{cut['tool_temperature_hot'].max() - water:.3g}", "–" if math.isnan(rise) else f"{rise:.3g}",
                f"{cut['tool_temperature_max'].max() - water:.3g}", f"{100 * cut['mass_lost'].max():.3g}"]
 
 

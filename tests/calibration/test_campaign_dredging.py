@@ -62,6 +62,48 @@ def test_rise_by_hand_in_a_thick_part_is_what_its_capacity_allows():
     assert dredging.by_hand(pick, 7e3) == pytest.approx(all_of_it, rel=0.01)
 
 
+class Turns(Pick):
+    """Two turns of a cut and a time in the water; numbers grow from the first."""
+
+    columns = {"stage": [1, 1, 2, 3, 3, 4], "working_time": [0.3, 0.65, 3.88, 4.2, 4.53, 7.76],
+               "cutting_force": [1e5, 3e5, 0, 4e5, 6e5, 0], "thrust_force": [1e4, 3e4, 0, 5e4, 7e4, 0],
+               "tool_friction": [1e3, 3e3, 3e3, 5e3, 8e3, 8e3], "pick_friction_heat": [8e2, 2e3, 2e3, 3e3, 6e3, 6e3],
+               "tool_temperature_hot": [284, 285, 283, 287, 286, 283], "mass_lost": [0, 0.01, 0.01, 0.02, 0.03, 0.03],
+               "tool_temperature_max": [290, 288, 283, 295, 299, 283]}
+    summary = {"balances": {"energy": {"residual": -20.0, "tool_work": 1e4}}, "wall_time": {"loop": 120.0}}
+
+    def column(self, name):
+        return np.array(self.columns[name], float)
+
+    def parameter(self, name):
+        return {"cycles": 2, "ambient_temperature": 283.0}.get(name) or super().parameter(name)
+
+    def result(self, name):
+        return {"rock_particles": 3500, "specific_energy": 6e6}[name]
+
+
+def test_each_turn_has_its_own_part_of_what_is_summed():
+    run = Turns([2e-4] * 10 + [0.0] * 40)
+    first, second = dredging.turn_rows(run)
+    assert first[:5] == [1, "200", "20", "3", "2"] and second[:5] == [2, "500", "60", "5", "4"]
+    assert first[5] == "2" and second[5] == "4" and first[7] == "7" and second[7] == "16"
+    assert first[6] == f"{dredging.by_hand(run, 2e3):.3g}" and second[6] == f"{dredging.by_hand(run, 4e3):.3g}"
+    assert first[8] == "1" and second[8] == "3"
+
+
+def test_turns_of_a_pick_that_does_not_wear_have_no_rise_by_hand():
+    assert [row[6] for row in dredging.turn_rows(Turns(np.zeros(50)))] == ["–", "–"]
+
+
+def test_the_page_of_turns_says_what_each_run_cost(tmp_path):
+    runs = {("P", 1): Turns([2e-4, 0.0]), ("M-II", 1): Turns([2e-4, 0.0]), ("window", 1): Turns([0.0])}
+    page = "\n".join(dredging.turn_tables(runs))
+    assert page.count("### ") == 2 and page.count("energy misses 0.2 % of the tool's work; 2 min of wall time.") == 2
+    temperature, mass = dredging.figure(runs).axes
+    assert len(temperature.lines) == len(mass.lines) == 2
+    assert temperature.lines[0].get_ydata().max() == 4 and mass.lines[1].get_ydata().max() == 3
+
+
 def test_the_page_is_of_the_runs_that_exist(tmp_path):
     for (case, seed), (name, _) in dredging.plan(["first"]).items():
         if case not in (dredging.REFERENCE, "window"):
