@@ -17,10 +17,23 @@ from rockwear.kernels.wear_statistics import difference, middles
 from rockwear.report import page, plots, published
 from rockwear.report.folder import read_history
 
-TOOTH, RIPPER = "yade_scripts/tooth_cycles.py", "yade_scripts/ripper.py"
+TOOTH, RIPPER, STEADY = (f"yade_scripts/{name}.py" for name in ("tooth_cycles", "ripper", "steady_cut"))
 FEW_PICTURES = dict(snapshot_period=0.0035, checkpoint_interval=300)
 LONG = dict(FEW_PICTURES, cycles=28, hardness_temperature=293.15, heat="false")
 """0.201 s as in [Rojek 2003, 9.2], constant hardness."""
+IN_ROCK_MASS = dict(
+    FEW_PICTURES, grading_factor=1, rock="m_sandstone", discs_per_depth=0, radius_min=1e-3, radius_max=1.5e-3, velocity=4,
+    contact_damping=0.9, time_step_fraction=0.8, heat="false", hardness_temperature=293.15, hardness_table="MET91",
+    wear_coefficient=0.01128, wear_acceleration=7000, tool_radius_min=0.4e-3)
+"""Rock, contacts and steel of the cycles, in a window of a rock mass."""
+TOOTH_IN_MASS = dict(
+    IN_ROCK_MASS, tooth_height=0.07, tooth_width=0.045, rake=0, clearance=3, tip_radius=4e-3, tool_radius_max=0.52e-3,
+    tool_kn=9e10, tool_kt=9e10, depth_of_cut=8e-3, cut_length=0.8, ramp_length=0.02, window_behind=0.04,
+    window_ahead=0.08, window_height=0.05)
+RIPPER_IN_MASS = dict(
+    IN_ROCK_MASS, kn=9e10, kt=9e10, tooth_height=0.085, tooth_width=0.06, rake=25, clearance=12, tip_radius=5e-3,
+    tool_radius_max=0.6e-3, tool_kn=2e10, tool_kt=2e10, depth_of_cut=0.015, cut_length=0.56, ramp_length=0.03,
+    window_behind=0.05, window_ahead=0.12, window_height=0.07)
 CASES = {
     "test tooth, 2e5": (TOOTH, dict(LONG, wear_acceleration=2e5)),
     "ripper, 2e5": (RIPPER, dict(FEW_PICTURES, wear_acceleration=2e5)),
@@ -31,6 +44,8 @@ CASES = {
     "test tooth, 8e5, twice as deep": (TOOTH, dict(LONG, wear_acceleration=8e5, cycles=7, depth_of_cut=0.016)),
     "test tooth, 7000": (TOOTH, dict(LONG, wear_acceleration=7000)),
     "ripper, 7000": (RIPPER, dict(FEW_PICTURES)),
+    "test tooth, 7000, rock mass": (STEADY, TOOTH_IN_MASS),
+    "ripper, 7000, rock mass": (STEADY, RIPPER_IN_MASS),
     "test tooth, 2.5e4": (TOOTH, dict(LONG, wear_acceleration=2.5e4, cycles=8)),
     "test tooth, 5e4": (TOOTH, dict(LONG, wear_acceleration=5e4, cycles=4)),
     "test tooth, 1e5": (TOOTH, dict(LONG, wear_acceleration=1e5, cycles=2)),
@@ -89,6 +104,12 @@ def comparison_rows(part, runs):
             for k, (name, share, off, expected) in enumerate(zip(runs, *compare(runs)))]
 
 
+def working(run):
+    """(rows,) s: time at work up to each row of the history; all of it where a run does not tell."""
+    told = run.column("working_time")
+    return run.column("time") if np.isnan(told).all() else told
+
+
 def mass_loss(runs):
     """Mass lost against simulated time, and against working hours."""
     figure, (raw, scaled) = plots.canvas(12, 4.4, 1, 2)
@@ -98,7 +119,7 @@ def mass_loss(runs):
         worn = 100 * run.column("worn_volume") / whole
         style = dict(color=colour, linestyle="--" if "ripper" in name else "-")
         raw.plot(plots.MS * time, worn, label=name, **style)
-        hours = run.column("working_time") * run.parameter("wear_acceleration", 1.0) / 3600
+        hours = working(run) * run.parameter("wear_acceleration", 1.0) / 3600
         scaled.loglog(hours[worn > 0], worn[worn > 0], **style)
     raw.plot(plots.MS * PUBLISHED[0], PUBLISHED[1], "k*", markersize=12, label="[Rojek 2003, 9.2], k × 7000")
     scaled.plot(PUBLISHED[0] * 7000 / 3600, PUBLISHED[1], "k*", markersize=12)
@@ -112,7 +133,7 @@ def wear_table(runs):
     """(rows, header) with a row for each run: amount and rate of wear, and their reliability."""
     rows = []
     for name, run in runs.items():
-        hours = run.result("working_time") * run.parameter("wear_acceleration", 1.0) / 3600
+        hours = working(run)[-1] * run.parameter("wear_acceleration", 1.0) / 3600
         lost = 100 * run.result("worn_volume") / run.model["tool_volumes"].sum()
         friction, mass = (run.summary["balances"][name] for name in ("friction", "mass"))
         rows.append((name, page.quantity(run.result("simulated_time"), "s"), f"{hours:.2f} h", f"{lost:.3g} %",

@@ -1,4 +1,6 @@
 """make campaign-wear in miniature: its page, its figures' numbers, runs kept."""
+import re
+
 import numpy as np
 import pytest
 
@@ -6,6 +8,7 @@ from calibration.campaigns import wear as campaign_wear
 from calibration.campaigns.runs import finished
 from rockwear.kernels.archard import MET91
 from rockwear.report.folder import RunFolder
+from tests.running import ROOT, run_script
 
 ROCK = dict(width=0.045, height=0.03, radius_min=2e-3, radius_max=3e-3)
 TINY = dict(ROCK, tooth_height=0.02, tooth_width=0.014, rake=10, clearance=10, tip_radius=2e-3, depth_of_cut=8e-3,
@@ -73,3 +76,26 @@ def test_a_run_that_failed_shows_its_error_and_is_not_kept(tmp_path, monkeypatch
     assert campaign_wear.main(tmp_path) == 1
     assert "too_fast ended with 1: error: the tool's shape cannot follow its wear" in capsys.readouterr().err
     assert (tmp_path / "too_fast/summary.json").exists() and not finished(tmp_path / "too_fast", values)
+
+
+def defaults(script):
+    """{parameter: its default as --help prints it}."""
+    words = run_script(ROOT / script, "--help").stdout
+    return {name: told.group(1) for name, text in re.findall(r"^  --(\w+) (.*?)(?=^  --|\Z)", words, re.M | re.S)
+            if (told := re.search(r"\(default\s+([^\s;)]+)", text))}
+
+
+@pytest.mark.parametrize("script, in_mass", [(campaign_wear.TOOTH, campaign_wear.TOOTH_IN_MASS),
+                                             (campaign_wear.RIPPER, campaign_wear.RIPPER_IN_MASS)])
+def test_the_tool_in_a_rock_mass_is_that_of_the_cycles(script, in_mass):
+    cycles, steady = defaults(script), defaults(campaign_wear.STEADY)
+    assert set(in_mass) <= set(steady)
+    own = {"snapshot_period", "checkpoint_interval", "grading_factor", "rock", "window_behind", "window_ahead", "heat",
+           "window_height", "ramp_length", "cut_length", "discs_per_depth", "hardness_temperature"}
+    shared = set(in_mass) - own
+    assert len(shared) > 15
+    assert {name: in_mass[name] for name in shared} == {
+        name: type(in_mass[name])(cycles[name]) for name in shared}
+    mass = in_mass["window_behind"] + in_mass["window_ahead"]
+    assert mass > in_mass["tooth_width"] and in_mass["hardness_temperature"] == campaign_wear.LONG[
+        "hardness_temperature"]
