@@ -23,8 +23,8 @@ LONG = dict(FEW_PICTURES, cycles=28, hardness_temperature=293.15, heat="false")
 """0.201 s as in [Rojek 2003, 9.2], constant hardness."""
 IN_ROCK_MASS = dict(
     FEW_PICTURES, grading_factor=1, rock="m_sandstone", discs_per_depth=0, radius_min=1e-3, radius_max=1.5e-3,
-    velocity=4, contact_damping=0.9, time_step_fraction=0.8, heat="false", hardness_temperature=293.15, hardness_table="MET91",
-    wear_coefficient=0.01128, wear_acceleration=7000, tool_radius_min=0.4e-3)
+    velocity=4, contact_damping=0.9, time_step_fraction=0.8, heat="false", hardness_temperature=293.15,
+    hardness_table="MET91", wear_coefficient=0.01128, wear_acceleration=7000, tool_radius_min=0.4e-3)
 """Rock, contacts and steel of the cycles, in a window of a rock mass."""
 TOOTH_IN_MASS = dict(
     IN_ROCK_MASS, tooth_height=0.07, tooth_width=0.045, rake=0, clearance=3, tip_radius=4e-3, tool_radius_max=0.52e-3,
