@@ -17,7 +17,7 @@ import matplotlib
 import numpy as np
 
 from calibration import generated
-from calibration.campaigns.runs import Runs, command_line, wait_for
+from calibration.campaigns.runs import Runs, command_line, existing, wait_for
 from calibration.campaigns.steady_cut_numbers import difference, of_forces, over_packings, scaled, shown
 from calibration.fitting import in_space
 from rockwear.kernels import steady_record
@@ -64,8 +64,8 @@ OTHERS = {
 depth with six of them of way and two beside, rock, mm of rock below the path, where others have 10."""
 OF_GRAINS = {f"{name}, {GRAINY}": breadth for name, breadth in BREADTHS.items()}
 """{case: m}: breadths in GRAINY."""
-CASES = {"0.45": ["13", "13, flat 2"], "0.6": [*BREADTHS, *OF_GRAINS],
-         "0.9": [*BREADTHS, *OF_GRAINS, *SLOWER, *OTHERS]}
+ALL_BREADTHS = {**BREADTHS, **OF_GRAINS}
+CASES = {"0.45": ["13", "13, flat 2"], "0.6": [*ALL_BREADTHS], "0.9": [*ALL_BREADTHS, *SLOWER, *OTHERS]}
 """{radius: cases}."""
 LABORATORY = {"compression": (in_space.SCRIPT, "peak_stress", in_space.SIDES, dict(test="compression", speed=0.1)),
               "toughness": (in_space.NOTCHED, "fracture_toughness", in_space.NOTCHED_SIDES, {})}
@@ -116,7 +116,7 @@ def changed(case):
     """Parameters of a case other than those of CUT."""
     rock = dict(rock=GRAINY) if GRAINY in case else {}
     other = slower(SLOWER[case]) if case in SLOWER else OTHERS.get(case, {})
-    return {**wider({**BREADTHS, **OF_GRAINS}.get(case, BREADTHS[BASE])), **rock, **other}
+    return {**wider(ALL_BREADTHS.get(case, BREADTHS[BASE])), **rock, **other}
 
 
 def file_name(case):
@@ -179,10 +179,8 @@ def measured(folder):
     """({radius: {case: {seed: {quantity: Measured}}}}, {(radius, test, rock): [Pa, or Pa sqrt(m)]}) of the runs that
     exist."""
     cuts, strengths = {}, {}
-    for (radius, case, seed), (place, _, _) in plan(RADII).items():
-        if not (folder / place / "summary.json").exists():
-            continue
-        run = RunFolder(folder / place)
+    places = {key: folder / place for key, (place, *_) in plan(RADII).items()}
+    for (radius, case, seed), run in existing(places).items():
         if isinstance(case, str):
             cuts.setdefault(radius, {}).setdefault(case, {})[seed] = of_run(run)
         else:
@@ -225,7 +223,7 @@ def changes(found):
     """Rows of the table of a radius: what each case changes in the packings that its base has, too."""
     for name, each in found.items():
         beside = found.get(GRAINY_BASE if GRAINY in name else BASE, {})
-        seeds = each.keys() & beside.keys() if name not in {**BREADTHS, **OF_GRAINS} else ()
+        seeds = each.keys() & beside.keys() if name not in ALL_BREADTHS else ()
         if seeds:
             here, base = (_over({seed: of[seed] for seed in seeds}) for of in (each, beside))
             by = [(difference(here, base, what), base[what].value) for what in CHANGES.values()]

@@ -13,9 +13,8 @@ import matplotlib
 import numpy as np
 
 from calibration import generated
-from calibration.campaigns.runs import Runs, command_line, wait_for
+from calibration.campaigns.runs import Runs, command_line, existing, wait_for
 from rockwear.report import palette, plots
-from rockwear.report.folder import RunFolder
 
 WAY, SOURCE = 0.04, 0.04
 """m, and m/s."""
@@ -58,11 +57,9 @@ def plan(scenes, speeds):
 def measured(folder, runs):
     """{(scene, speed): {seed: {heading: number}}} of the runs of a plan that exist."""
     found = {}
-    for (scene, speed, seed), (name, *_) in runs.items():
-        if (folder / name / "summary.json").exists():
-            run = RunFolder(folder / name)
-            found.setdefault((scene, speed), {})[seed] = {
-                heading: float(number(run)) for heading, number in QUANTITIES.items()}
+    for (scene, speed, seed), run in existing({key: folder / name for key, (name, *_) in runs.items()}).items():
+        found.setdefault((scene, speed), {})[seed] = {
+            heading: float(number(run)) for heading, number in QUANTITIES.items()}
     return found
 
 

@@ -14,10 +14,9 @@ import numpy as np
 
 from calibration import generated
 from calibration.campaigns import rock_laws
-from calibration.campaigns.runs import Runs, command_line, wait_for
+from calibration.campaigns.runs import Runs, command_line, existing, wait_for
 from rockwear.kernels.fracture import size_effect
 from rockwear.report import palette, plots
-from rockwear.report.folder import RunFolder
 
 SEEDS = 1, 2, 3
 COARSE, FINE = dict(radius_min=1e-3, radius_max=1.5e-3), dict(radius_min=2.5e-4, radius_max=3.75e-4)
@@ -48,12 +47,10 @@ def plan(rocks):
 def measured(folder, rocks):
     """{rock: {W: {heading: (packings,) values}}} of the runs that exist."""
     found = {}
-    for (rock, size, _), (name, _) in plan(rocks).items():
-        if (folder / name / "summary.json").exists():
-            run = RunFolder(folder / name)
-            for heading, (result, unit) in QUANTITIES.items():
-                of = found.setdefault(rock, {}).setdefault(size, {})
-                of.setdefault(heading, []).append(unit * run.result(result))
+    for (rock, size, _), run in existing({key: folder / name for key, (name, _) in plan(rocks).items()}).items():
+        of = found.setdefault(rock, {}).setdefault(size, {})
+        for heading, (result, unit) in QUANTITIES.items():
+            of.setdefault(heading, []).append(unit * run.result(result))
     return {rock: dict(sorted(of.items())) for rock, of in found.items()}
 
 
