@@ -45,7 +45,8 @@ FIRST = {
     "coarse, mechanics 2.5 times as fast": (dict(COARSE, time_scale=2.5), 40, COARSE_REFERENCE),
     "coarse, 10 times": (dict(COARSE, time_scale=10), 40, COARSE_REFERENCE),
     "coarse, backing of 40 mm, not 60": (dict(COARSE, backing=0.04), 40, COARSE_REFERENCE),
-    "coarse, step 0.5 of the critical one": (dict(COARSE, time_step_fraction=0.5), 40, COARSE_REFERENCE)}
+    "coarse, step 0.5 of the critical one": (dict(COARSE, time_step_fraction=0.5), 40, COARSE_REFERENCE),
+    "coarse, mechanics as fast as the process": (dict(COARSE, time_scale=1), 40, COARSE_REFERENCE)}
 """{case: (what differs, packings, the case beside which it stands)} of the first part of the arc, with the rock and the
 pick of [Rojek 2014]."""
 HOTTEST = 0.01
