@@ -33,20 +33,21 @@ TURNS = {
                                             tooth_height=0.1386, tooth_width=0.1386), (1,))}
 """{name: (what it is, parameters, seeds)} of the sources' three turns."""
 LONG, COARSE = dict(window_behind=0.12, window_ahead=0.3, backing=0.12), dict(scale_factor=4)
-REFERENCE, COARSE_REFERENCE = "long window", "discs 4 times as coarse, long window"
+REFERENCE, COARSE_WINDOW, COARSE_REFERENCE = (
+    "long window", "discs 4 times as coarse", "discs 4 times as coarse, long window")
 FIRST = {
     REFERENCE: (LONG, 5, None),
     "window": ({}, 5, REFERENCE),
     "mechanics 2.5 times as fast as the process, not 5": (dict(time_scale=2.5), 5, REFERENCE),
     "10 times": (dict(time_scale=10), 5, REFERENCE),
     "step 0.5 of the critical one, not 0.95": (dict(time_step_fraction=0.5), 5, REFERENCE),
-    "discs 4 times as coarse": (COARSE, 40, COARSE_REFERENCE),
+    COARSE_WINDOW: (COARSE, 40, COARSE_REFERENCE),
     COARSE_REFERENCE: ({**LONG, **COARSE}, 40, REFERENCE),
-    "coarse, mechanics 2.5 times as fast": (dict(COARSE, time_scale=2.5), 40, COARSE_REFERENCE),
-    "coarse, 10 times": (dict(COARSE, time_scale=10), 40, COARSE_REFERENCE),
-    "coarse, backing of 40 mm, not 60": (dict(COARSE, backing=0.04), 40, COARSE_REFERENCE),
-    "coarse, step 0.5 of the critical one": (dict(COARSE, time_step_fraction=0.5), 40, COARSE_REFERENCE),
-    "coarse, mechanics as fast as the process": (dict(COARSE, time_scale=1), 40, COARSE_REFERENCE)}
+    "coarse, mechanics 2.5 times as fast": (dict(COARSE, time_scale=2.5), 40, COARSE_WINDOW),
+    "coarse, 10 times": (dict(COARSE, time_scale=10), 40, COARSE_WINDOW),
+    "coarse, backing of 40 mm, not 60": (dict(COARSE, backing=0.04), 40, COARSE_WINDOW),
+    "coarse, step 0.5 of the critical one": (dict(COARSE, time_step_fraction=0.5), 40, COARSE_WINDOW),
+    "coarse, mechanics as fast as the process": (dict(COARSE, time_scale=1), 40, COARSE_WINDOW)}
 """{case: (what differs, packings, the case beside which it stands)} of the first part of the arc, with the rock and the
 pick of [Rojek 2014]."""
 HOTTEST = 0.01

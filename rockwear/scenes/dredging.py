@@ -64,7 +64,7 @@ def groups(full=False):
         [*found, OUTPUT], kt=4e9, Rn=0.1e6, Rt=0.1e6, mu=0.8, tooth_height=0.15, tooth_width=0.15, rake=10.0,
         clearance=20.0,
         tip_radius=0.008, tool_radius_min=1e-3, tool_radius_max=1e-3, tool_kn=50e9, tool_kt=50e9, tool_mu=0.4,
-        contact_damping=0.0, time_step_fraction=0.5, approach=1e-3, time_scale=5.0, hardness_table="MET71",
+        contact_damping=0.0, approach=1e-3, time_scale=5.0, hardness_table="MET71",
         wear_coefficient=0.0025, wear_acceleration=1e4, rock_expansion=1e-5, convection=5000.0,
         ambient_temperature=283.0,
         rock_temperature=283.0, tool_temperature=283.0,
