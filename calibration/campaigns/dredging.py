@@ -19,6 +19,7 @@ from scipy.integrate import trapezoid
 from calibration import generated
 from calibration.campaigns.runs import Runs, command_line, existing, wait_for
 from rockwear.kernels.analytic import diffusivity, half_space_under_flux
+from rockwear.kernels.conduction import HOTTEST
 from rockwear.report import palette, plots
 
 SCRIPT, PARTS = "yade_scripts/dredge_pick.py", ("turns", "first")
@@ -50,8 +51,6 @@ FIRST = {
     "coarse, mechanics as fast as the process": (dict(COARSE, time_scale=1), 40, COARSE_WINDOW)}
 """{case: (what differs, packings, the case beside which it stands)} of the first part of the arc, with the rock and the
 pick of [Rojek 2014]."""
-HOTTEST = 0.01
-"""Part of the pick's mass that the temperature of its hottest part is of."""
 FIRST_TIME = 0.05
 """s of cutting: a way of 57 mm, into chips of 25 to 30 mm."""
 QUIET = dict(report="false", snapshot_period=1)

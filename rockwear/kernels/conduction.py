@@ -22,6 +22,8 @@ STEFAN_BOLTZMANN = 5.670374419e-8  # W/(m^2 K^4)
 # (on a chain they nearly cancel: a dt/l^2 = 1/4, where 1/6 is best).
 STEP_FRACTION = 0.5
 
+HOTTEST = 0.01  # part of the mass whose mean temperature stands beside that of the hottest particle
+
 PATHS = "voronoi", "fitted", "bar", "half_bar"  # models of conduction between particles, see paths()
 
 _DENSE = 100  # nodes up to which a dense eigenvalue is quicker than Lanczos
@@ -410,6 +412,19 @@ def effusivity_share(e_i, e_j):
     """
     e_i, e_j = positive("e_i", e_i, "W s^0.5/(m^2 K)"), positive("e_j", e_j, "W s^0.5/(m^2 K)")
     return e_i / (e_i + e_j)
+
+
+def hot_and_mean(network, first):
+    """Mean temperatures (K) of the hottest part of the mass of the nodes from `first` on, HOTTEST of it or at least the
+    heaviest node's, and of all of it.
+
+    Where no node becomes colder, neither does the part: it is as heavy whatever the order.
+    """
+    order = first + np.argsort(-network.temperature[first:])
+    capacity, temperature = network.capacity[order], network.temperature[order]
+    part = max(HOTTEST * capacity.sum(), capacity.max())
+    hottest = np.clip(part - (np.cumsum(capacity) - capacity), 0.0, capacity)
+    return tuple(float(np.average(temperature, weights=weights)) for weights in (hottest, capacity))
 
 
 def effective_conductivity(*, positions, edges, conductance):

@@ -4,15 +4,13 @@ from contextlib import contextmanager
 import numpy as np
 from scipy.spatial import cKDTree
 
-from rockwear.kernels.conduction import HeatNetwork
+from rockwear.kernels.conduction import HeatNetwork, hot_and_mean
 from rockwear.scenes.programme import Programme
 
 COOLING_CHUNK = 20
 """Cooling steps between two looks at the clock."""
 REPEATED = 40
 """Turns for which the mean heating of the cuts is repeated."""
-HOTTEST = 0.01
-"""Part of the tool's mass whose mean temperature is recorded beside that of the hottest particle."""
 
 
 class Turns(Programme):
@@ -199,13 +197,3 @@ class Turns(Programme):
             rows.append((turn, peak, *hot_and_mean(network, rock), change["generated"],
                          -change["convected"] - change["radiated"]))
         return rows
-
-
-def hot_and_mean(network, first):
-    """Mean temperatures (K) of the hottest part of the mass of the nodes from `first` on, at least the heaviest node's,
-    and of all of it. Where no node becomes colder, neither does the part: it is as heavy whatever the order."""
-    order = first + np.argsort(-network.temperature[first:])
-    capacity, temperature = network.capacity[order], network.temperature[order]
-    part = max(HOTTEST * capacity.sum(), capacity.max())
-    hottest = np.clip(part - (np.cumsum(capacity) - capacity), 0.0, capacity)
-    return tuple(float(np.average(temperature, weights=weights)) for weights in (hottest, capacity))

@@ -9,7 +9,7 @@ from rockwear.kernels.checks import ParameterError
 from rockwear.kernels.packing import pack
 from rockwear.kernels.conduction import (
     PATHS, STEFAN_BOLTZMANN, HeatNetwork, bar_conductance, calibrated_conductance, effective_conductivity, effusivity,
-    effusivity_share, paths)
+    effusivity_share, hot_and_mean, paths)
 
 
 def chain(n, conductance=1.0, capacity=1.0, temperature=300.0):
@@ -85,6 +85,19 @@ def test_one_euler_step_is_that_of_the_paper():
     network.advance(0.1, step=0.1)
     gains = np.array([8 + 20, -20 + 40, -40 - 25])
     assert network.temperature == pytest.approx([300, 310, 330] + 0.1 * gains / 4)
+
+
+@pytest.mark.parametrize("n, coldest, hot", [(1000, 1.0, 994.5), (50, 1.0, 49.0), (1000, 20.0, 989.5)])
+def test_the_hottest_part_is_a_hundredth_of_the_mass_or_the_heaviest_node(n, coldest, hot):
+    """Nodes of 0 ... n - 1 K in any order and of the same mass, but for the coldest; a hotter one before does not
+    count."""
+    order = np.random.default_rng(1).permutation(n)
+    edges = np.column_stack([np.arange(n), np.arange(1, n + 1)])
+    network = HeatNetwork(capacity=np.where(np.r_[1, order] == 0, coldest, 1.0), edges=edges, conductance=1.0,
+                          temperature=np.r_[1e4, order])
+    found, mean = hot_and_mean(network, 1)
+    assert found == pytest.approx(hot)
+    assert mean == pytest.approx(n * (n - 1) / 2 / (n - 1 + coldest))
 
 
 def test_chain_decays_at_its_own_rate_and_at_that_of_the_rod():
