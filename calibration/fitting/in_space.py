@@ -6,12 +6,12 @@ Blocks of some 1440 spheres are compressed and pulled until E, nu, UCS and tensi
 file. Where it has a target for the toughness, notched blocks are torn, the bonds' fracture energy is changed until they
 have it, and blocks are tested again. Then other packings are tested. Fitted are the stiffnesses of the bonds, their two
 strengths and, of cohesive bonds, the fracture energy unless it is given; friction, crushing and the shear energy are
-those of the plane. Where slip does not damage the bonds of the plane, UCS over tensile
-strength stays near six without grains; --bond_shear_energy 1000 doubles it, and makes a tough rock. --grains 1.8
---grain_strength 15 makes it twelve at the toughness of a sandstone; packings of grains differ by a tenth, and ask for
---packings 5. Grains that do not break lock before a tool (calibration/results/groove.md). nu is that of a pulled block:
-in a compressed one the first cracks open along the load. Writes DIR/rock.json, the rock with both parts, and
-DIR/in_space.md. What was interrupted goes on where it was when it is started again with the same words.
+those of the plane. Where slip does not damage the bonds of the plane, UCS over tensile strength stays near six without
+grains; --bond_shear_energy 1000 doubles it, and makes a tough rock. --grains 1.8 --grain_strength 15 makes it twelve at
+the toughness of a sandstone; packings of grains differ by a tenth, and ask for --packings 5. Grains that do not break
+lock before a tool (calibration/results/groove.md). nu is that of a pulled block: in a compressed one the first cracks
+open along the load. Writes DIR/rock.json, the rock with both parts, and DIR/in_space.md. What was interrupted goes on
+where it was when it is started again with the same words.
 """
 import hashlib
 import json

@@ -69,7 +69,8 @@ def groups(full=False):
         ambient_temperature=283.0,
         rock_temperature=283.0, tool_temperature=283.0,
         # Of the friction in the rock, 44 % of the work of 19 ms in a cut, 2, 4 and 8 steps between samples miss or add
-        # 0.7, 2.6 and 7.1 %, at 0.60, 0.49 and 0.36 of the time that samples of every step take.
+        # 0.7, 2.6 and 7.1 %, at 0.60, 0.49 and 0.36 of the time that samples of every step take (steps of half the
+        # critical one).
         rock_sampling_period=2, heat_period=1e-3, surface_period=0.01, record_period=2e-3, **size)
 
 
