@@ -296,6 +296,19 @@ def wait_for(jobs, words):
     return failed
 
 
+def ended_well(jobs):
+    """({key: RunFolder} of those runs {key: Started} that end well, [what the others said]); waits for all. Those that
+    do not are said on stderr."""
+    found, failures = {}, []
+    for key, job in jobs.items():
+        try:
+            found[key] = job.result()
+        except RunFailed as error:
+            failures.append(str(error))
+            print(f"left out: {error}", file=sys.stderr, flush=True)
+    return found, failures
+
+
 def finished(folder, values):
     """True for a folder with the summary of a run that finished, with these values, the same input files and this
     version of rockwear: another one may find other results, and one table is not to mix them."""

@@ -21,7 +21,7 @@ import sys
 import numpy as np
 
 from calibration import command, generated
-from calibration.campaigns.runs import RunFailed, Runs, as_they_end
+from calibration.campaigns.runs import RunFailed, Runs, as_they_end, ended_well
 from calibration.fitting.rock_fit import COMMON_SEEDS, exit_code, statistics, verdict
 from calibration.fitting.rock_page import allowed, measured, off, shown
 from calibration.fitting.rock_tests import COMMON, DROP, LEAST
@@ -109,21 +109,21 @@ class BlockLaboratory:
                 **{name: float(f"{value:.5g}") for name, value in found.items()}}
 
     def measure(self, x, seeds):
-        """{Observable: (packings,) values}. Raises RunFailed."""
+        """{Observable: (packings,) values}, nan where a run failed. Raises RunFailed."""
         box = sized(SIDES, self.radius)
         strains = {test: strength(test, self.rock.targets) / self.rock.targets["youngs_modulus"]
                    for test in ("compression", "tension")}
         found = self._run(x, seeds, SCRIPT, {test: dict(test=test, drop=DROP, **box, **loading(test, strain))
                                              for test, strain in strains.items()})
-        return {o: np.array([found[o.test, seed].result(o.result) for seed in seeds]) for o in self.observables}
+        return {o: self._values(found, o.test, o.result, seeds) for o in self.observables}
 
     def toughness(self, x, seeds):
-        """(packings,) Pa sqrt(m): fracture toughness. Raises RunFailed."""
+        """(packings,) Pa sqrt(m): fracture toughness, nan where it is not known. Raises RunFailed."""
         found = self._run(x, seeds, NOTCHED, {"toughness": sized(NOTCHED_SIDES, self.radius)})
-        return np.array([found["toughness", seed].result("fracture_toughness") for seed in seeds])
+        return self._values(found, "toughness", "fracture_toughness", seeds)
 
     def _run(self, x, seeds, script, tests):
-        """{(test, seed): RunFolder} of {test: its parameters}."""
+        """{(test, seed): RunFolder} of {test: its parameters}, of the runs that end well."""
         given = self.parameters(x)
         digest = hashlib.sha256(json.dumps([given, self.radius], sort_keys=True).encode()).hexdigest()[:12]
         jobs = {(test, seed): self.runs.start(f"{digest}/{test}-{seed}", script, radius=self.radius, seed=seed,
@@ -131,7 +131,15 @@ class BlockLaboratory:
                 for seed in seeds for test, values in tests.items()}
         for _ in as_they_end(jobs.values()):
             pass
-        return {key: job.result() for key, job in jobs.items()}
+        found, failures = ended_well(jobs)
+        for test in tests:
+            if sum(key[0] == test for key in found) < LEAST:
+                raise RunFailed(f"fewer than {LEAST} packings end well in {test}: {'; '.join(failures)}")
+        return found
+
+    @staticmethod
+    def _values(found, test, result, seeds):
+        return np.array([found[test, seed].result(result) if (test, seed) in found else math.nan for seed in seeds])
 
 
 def search(measure, of, first):
@@ -161,22 +169,26 @@ def next_energy(tried, target):
 def fitted(laboratory, seeds, first):
     """Search and, where a toughness is aimed at and the fracture energy is free, change that and search again.
 
-    laboratory: BlockLaboratory, whose `given` has the energy of the last search afterwards. -> (surrogate.Solution,
-    [(energy, mean toughness)] of those tried).
+    laboratory: BlockLaboratory, whose `given` has the energy of the solution afterwards. -> (surrogate.Solution of the
+    energy that came nearest, [(energy, mean toughness)] of those tried).
     """
     def searched(start):
         return search(lambda x: laboratory.measure(x, seeds), laboratory.observables, start)
-    solution, tried = searched(first), []
+    solution, tried, solutions = searched(first), [], []
     while laboratory.tough_target:
         energy = laboratory.parameters(solution.x)["bond_fracture_energy"]
         found = laboratory.toughness(solution.x, seeds)
         if np.isfinite(found).sum() < LEAST:
             break
         tried.append((energy, float(np.nanmean(found))))
+        solutions.append(solution)
         if abs(tried[-1][1] / laboratory.tough_target - 1) <= TOUGH or len(tried) == TEARS:
             break
         laboratory.given["bond_fracture_energy"] = float(f"{next_energy(tried, laboratory.tough_target):.4g}")
         solution = searched(solution.x)
+    if tried:
+        nearest = min(range(len(tried)), key=lambda n: abs(math.log(tried[n][1] / laboratory.tough_target)))
+        solution, laboratory.given["bond_fracture_energy"] = solutions[nearest], tried[nearest][0]
     return solution, tried
 
 
@@ -249,7 +261,7 @@ def checked(laboratory, x, seeds):
 
 def main(words):
     """-> exit code: 0 where every target is met; 3 where some are missed; 4 where packings scatter too much to tell; 2:
-    options that cannot be used; 1: a run failed."""
+    options that cannot be used; 1: too few runs ended well."""
     command.help_if_asked()
     try:
         values = parameters.read(GROUPS, words)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from calibration.campaigns.runs import RunFailed
+from calibration.campaigns.runs import RunFailed, ended_well
 from calibration.laboratory.loading import loading, strength
 
 COMMON = {"report": "false", "snapshot_period": 1, "rock_sampling_period": 50}
@@ -51,7 +51,8 @@ class Laboratory:
         order = sorted(tests, key=lambda test: ("triaxial", "compression", "toughness", "tension").index(test[0]))
         seeds = {test: stage.seeds[:stage.dear if test[0] == "triaxial" else None] for test in order}
         jobs = {(*test, seed): self._start(*test, seed, parameters, stage) for test in order for seed in seeds[test]}
-        done = self._finished(jobs)
+        done, failures = ended_well(jobs)
+        self.failures += failures
         self.not_failed[stage.name] = sorted(
             {f"{test} {1e-6 * confinement:g} MPa" if confinement else test
              for (test, confinement, _), run in done.items() if run.result("failed") == 0})
@@ -71,16 +72,6 @@ class Laboratory:
                  ("triaxial", "confined compression", stage.confined)]
         return ", ".join(f"{1e3 * side * self.micro.radius:.3g} mm in {words}" for test, words, side in sides
                          if test in tests)
-
-    def _finished(self, jobs):
-        """{key: RunFolder} of the jobs that end well. A packing that fails is left out."""
-        done = {}
-        for key, job in jobs.items():
-            try:
-                done[key] = job.result()
-            except RunFailed as error:
-                self.failures.append(str(error))
-        return done
 
     def _start(self, test, confinement, seed, parameters, stage):
         script, values = self._test(test, confinement, stage)

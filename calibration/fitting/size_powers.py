@@ -17,9 +17,9 @@ from pathlib import Path
 import numpy as np
 
 from calibration import command, generated
-from calibration.campaigns.runs import RunFailed, Runs, as_they_end, require_dask
+from calibration.campaigns.runs import RunFailed, Runs, as_they_end, ended_well, require_dask
 from calibration.fitting.rock_fit import LEAST_NOISE, SIDES, check_jobs
-from calibration.fitting.rock_tests import COMMON, DROP
+from calibration.fitting.rock_tests import COMMON, DROP, LEAST
 from calibration.fitting.surrogate import Problem, Surrogate, solve
 from rockwear.kernels.checks import ParameterError, require
 from rockwear.kernels.parameter import Group, Parameter, file, integer, number, text
@@ -58,7 +58,7 @@ class SizedLaboratory:
 
     def measure(self, powers, ratios, seeds):
         """{(test, ratio): (packings,) Pa} of the rock with these powers (2,), in discs of `ratios` times the radii of
-        its file. Raises RunFailed."""
+        its file, nan where a run failed. Raises RunFailed."""
         rock = json.dumps(with_powers(self.data, powers), indent=1) + "\n"
         name = hashlib.sha256(rock.encode()).hexdigest()[:12]
         path = self.folder / f"rock-{name}.json"
@@ -67,8 +67,15 @@ class SizedLaboratory:
                 for ratio in ratios for test in TESTS for seed in seeds}
         for _ in as_they_end(jobs.values()):
             pass
-        return {(test, ratio): np.array([jobs[test, ratio, seed].result().result(TESTS[test][1]) for seed in seeds])
-                for ratio in ratios for test in TESTS}
+        runs, failures = ended_well(jobs)
+        found = {(test, ratio): np.array([runs[test, ratio, seed].result(TESTS[test][1])
+                                          if (test, ratio, seed) in runs else math.nan for seed in seeds])
+                 for ratio in ratios for test in TESTS}
+        for test in TESTS:
+            if np.isfinite([found[test, ratio] for ratio in ratios]).all(axis=0).sum() < LEAST:
+                raise RunFailed(f"fewer than {LEAST} packings end well in {test} at every radius: "
+                                f"{'; '.join(failures)}")
+        return found
 
     def _start(self, test, ratio, seed, name, path):
         radii = {of: ratio * value for of, value in self.data["plane"]["resolution"].items()}
@@ -89,7 +96,7 @@ def exponents(found, factor):
     """(mean (2,), standard error (2,)) of d ln strength / d ln radius, in the order of TESTS, between discs `factor`
     times coarser and finer of the same packings. found: of SizedLaboratory.measure."""
     of = np.array([np.log(found[test, factor] / found[test, 1 / factor]) for test in TESTS]) / (2 * math.log(factor))
-    return np.array([generated.mean_and_error(of_packings) for of_packings in of]).T
+    return np.array([generated.mean_and_error(of_packings[np.isfinite(of_packings)]) for of_packings in of]).T
 
 
 def search(measure, *, factor, start):
@@ -110,9 +117,10 @@ def changes(found, factor):
     rows = []
     for test, (words, _, allowed) in TESTS.items():
         for ratio in (factor, 1.0, 1 / factor):
-            values = found[test, ratio]
-            change, error = generated.mean_and_error(values / found[test, 1.0] - 1.0)
-            rows.append((words, ratio, *generated.mean_and_error(values), change, error, abs(change) <= allowed))
+            values, here = found[test, ratio], found[test, 1.0]
+            both = np.isfinite(values) & np.isfinite(here)
+            change, error = generated.mean_and_error(values[both] / here[both] - 1.0)
+            rows.append((words, ratio, *generated.mean_and_error(values[both]), change, error, abs(change) <= allowed))
     return rows
 
 
@@ -170,8 +178,8 @@ def rock_of(values):
 
 
 def main(words):
-    """-> exit code: 0 where the strengths stay; 3 where they do not; 2: options that cannot be used; 1: a run
-    failed."""
+    """-> exit code: 0 where the strengths stay; 3 where they do not; 2: options that cannot be used; 1: too few
+    runs ended well."""
     command.help_if_asked()
     try:
         values = parameters.read(GROUPS, words)

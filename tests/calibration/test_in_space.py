@@ -4,6 +4,7 @@ import json
 import numpy as np
 import pytest
 
+from calibration.campaigns.runs import RunFailed
 from calibration.fitting import in_space
 from calibration.fitting.in_space import BlockLaboratory
 from rockwear.model import rock_file
@@ -106,6 +107,53 @@ def test_a_toughness_that_no_energy_changes_ends_after_few_trials(run, monkeypat
     assert all(1 / in_space.LARGEST <= b / a < 1 for a, b in zip(energies, energies[1:-1]))
 
 
+def test_of_the_fracture_energies_tried_the_nearest_is_taken(run, monkeypatch, tmp_path):
+    """The second one, 10 % off, is neither the last nor within what is asked for."""
+    energies, found = [], [1.2e6, 0.66e6, 0.4e6, 0.9e6, 0.66e6]
+
+    def given(laboratory, x, seeds):
+        energies.append(laboratory.parameters(x)["bond_fracture_energy"])
+        return np.full(len(seeds), found[len(energies) - 1])
+    monkeypatch.setattr(BlockLaboratory, "toughness", given)
+    run("--rock", "medium_sandstone")
+    space = rock_file.read(tmp_path / "out" / "rock.json", OF_ROCK).parts["space"]
+    assert space.parameters["bond_fracture_energy"] == energies[-1] == energies[1] != energies[3]
+
+
+class FailingRuns:
+    """In place of Runs: those of `failing` seeds fail, others give a strength of 1 MPa, or 2 MPa in tension."""
+
+    def __init__(self, failing):
+        self.failing = failing
+
+    def start(self, folder, script, *, seed, **values):
+        return FailingRun(folder, seed in self.failing, 2e6 if "tension" in folder else 1e6)
+
+
+class FailingRun:
+    """In place of Started."""
+
+    def __init__(self, folder, fails, strength):
+        self.folder, self.fails, self.strength, self.over = folder, fails, strength, True
+
+    def result(self, name=None):
+        if self.fails:
+            raise RunFailed(f"{self.folder} ended with 1: no reason")
+        return self.strength if name else self
+
+
+def test_a_packing_that_fails_is_left_out(tmp_path, capsys):
+    rock = rock_file.read(rock_file.find("medium_sandstone"), OF_ROCK)
+
+    def laboratory(*failing):
+        return BlockLaboratory(runs=FailingRuns(failing), rock=rock, radius=6e-4, given={})
+    found = {o.name: values for o, values in laboratory(2).measure(in_space.FIRST, (1, 2, 3)).items()}
+    assert found["ucs"][[0, 2]].tolist() == [1e6, 1e6] and np.isnan(found["ucs"][1])
+    assert found["tensile_strength"][2] == 2e6 and capsys.readouterr().err.count("left out") == 2
+    with pytest.raises(RunFailed, match="fewer than 2 packings end well in compression: .*no reason"):
+        laboratory(1, 2).measure(in_space.FIRST, (1, 2, 3))
+
+
 def test_a_toughness_that_one_packing_alone_tells_is_left_out(run, monkeypatch, tmp_path):
     monkeypatch.setattr(BlockLaboratory, "toughness", lambda *_: np.array([np.nan, 0.6e6, np.nan]))
     code, *_ = run("--rock", "medium_sandstone")
@@ -171,8 +219,8 @@ def test_blocks_grow_with_their_spheres_and_their_parameters_are_the_scripts(tmp
     rock = rock_file.read(rock_file.find("crushing_sandstone"), OF_ROCK)
     for radius in (3e-4, 6e-4):
         laboratory = BlockLaboratory(runs=Kept(), rock=rock, radius=radius, given={})
-        laboratory.measure(in_space.FIRST, [7])
-        assert list(laboratory.toughness(in_space.FIRST, [7])) == [1.0]
+        laboratory.measure(in_space.FIRST, [7, 8])
+        assert list(laboratory.toughness(in_space.FIRST, [7, 8])) == [1.0, 1.0]
     fine, coarse = (started["tension-7", radius] for radius in (3e-4, 6e-4))
     assert all(coarse[name] == pytest.approx(2 * fine[name], rel=1e-3)
                for name in ("width", "height", "depth", "kn", "kt"))

@@ -39,6 +39,17 @@ def test_powers_are_found_with_which_no_strength_changes():
     assert abs(LOST + ANSWERS @ solution.x).max() < 0.02
 
 
+def test_packings_that_failed_do_not_count():
+    """The exponents and changes are those of the packings that ended well."""
+    ratios = 3.0, 1.0, 1 / 3.0
+    found, kept = (made_up(np.zeros(2), ratios, seeds) for seeds in ((1, 2, 3), (1, 3)))
+    for ratio in ratios:
+        found["compression", ratio][1] = np.nan
+    assert size_powers.exponents(found, 3.0)[0] == pytest.approx(LOST, abs=1e-12)
+    left, right = (size_powers.changes(of, 3.0)[:3] for of in (found, kept))
+    assert [row[2:6] for row in left] == [pytest.approx(row[2:6]) for row in right]
+
+
 @pytest.fixture
 def run(tmp_path, monkeypatch, capsys):
     """run(word, ...) -> (exit code, stdout, stderr) of the command with the made-up laboratory."""
