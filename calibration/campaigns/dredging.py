@@ -24,13 +24,12 @@ from rockwear.report import palette, plots
 
 SCRIPT, PARTS = "yade_scripts/dredge_pick.py", ("turns", "first")
 WINDOW = dict(scale_factor=1, window_behind=0.06, window_ahead=0.14, time_step_fraction=0.95)
-SLIM = dict(WINDOW, backing=0.04)
-"""The window of the sources' turns. What its thinner backing changes is part of `first`."""
+FAST = dict(WINDOW, backing=0.04, time_scale=10)
+"""Three turns within the hour. What the thinner backing and the faster mechanics change is part of `first`."""
 ROCK_2003 = dict(kt=20e9, Rt=1e6, mu=0.839, hardness_table="MET91", wear_coefficient=0.01128)
 WORN_2003 = dict(ROCK_2003, wear_acceleration=7000, hardness_temperature=293)
 TURNS = {
     "P": ("[Rojek 2014, 5]", {}, (1,)),
-    "P-10": ("[Rojek 2014, 5], mechanics 10 times as fast as the process, not 5", dict(time_scale=10), (1,)),
     "M-I": ("[Rojek 2003, 12.1.2], I unworn", dict(ROCK_2003, wear_acceleration=0), (1,)),
     "M-I-worn": ("[Rojek 2003, 12.1.3], I", WORN_2003, (1,)),
     "M-II": ("[Rojek 2003, 12.2], II", dict(WORN_2003, tool_radius_min=0.7e-3, tool_radius_max=0.7e-3,
@@ -73,7 +72,7 @@ def plan(words):
     found = {}
     if "turns" in words:
         for name, (_, values, seeds) in TURNS.items():
-            found.update({(name, seed): (f"source-{name}-{seed}", dict(SLIM, **values, seed=seed))
+            found.update({(name, seed): (f"source-{name}-{seed}", dict(FAST, **values, seed=seed))
                           for seed in seeds})
     if "first" in words:
         cases = [(number, case, seed) for number, (case, (_, packings, _)) in enumerate(FIRST.items())
