@@ -1,13 +1,13 @@
 """Dredging at the sources' own discs, in a window along the arc: three turns, and the errors of window and scaling.
 
-    python3 -m calibration.campaigns.dredging DIR [turns] [first] [--read] [--jobs N | --scheduler ADDRESS]
+    python3 -m calibration.campaigns.dredging DIR [turns] [first] [whole] [--read] [--jobs N | --scheduler ADDRESS]
 
 `turns`: three turns of [Rojek 2014, 5] and of the models of [Rojek 2003, 12], discs of 1 to 1.5 mm (about an hour
 each). `first`: the first part of the arc, in a window and in one so long that nothing enters that the pick could feel
-or meet, at other rates of the mechanics, steps and sizes of discs. Without either word: both. N runs at a time (2), or
-as many as a dask scheduler's workers take; a folder a run; finished runs are not repeated, so that an interrupted
-campaign resumes. --read starts no run and evaluates those that exist. Writes into DIR dredging.md, dredging.png and
-provenance.json.
+or meet, at other rates of the mechanics, steps and sizes of discs. `whole`: a whole cut in coarse discs, at other
+rates of the mechanics. Without any of these words: all. N runs at a time (2), or as many as a dask scheduler's workers
+take; a folder a run; finished runs are not repeated, so that an interrupted campaign resumes. --read starts no run and
+evaluates those that exist. Writes into DIR dredging.md, dredging.png and provenance.json.
 """
 import math
 import sys
@@ -22,7 +22,7 @@ from rockwear.kernels.analytic import diffusivity, half_space_under_flux
 from rockwear.kernels.conduction import HOTTEST
 from rockwear.report import palette, plots
 
-SCRIPT, PARTS = "yade_scripts/dredge_pick.py", ("turns", "first")
+SCRIPT, PARTS = "yade_scripts/dredge_pick.py", ("turns", "first", "whole")
 WINDOW = dict(scale_factor=1, window_behind=0.06, window_ahead=0.14, time_step_fraction=0.95)
 FAST = dict(WINDOW, backing=0.04, time_scale=10)
 """Three turns within the hour. What the thinner backing and the faster mechanics change is part of `first`."""
@@ -53,8 +53,15 @@ FIRST = {
     "coarse, mechanics as fast as the process": (dict(COARSE, time_scale=1), 40, COARSE_WINDOW)}
 """{case: (what differs, packings, the case beside which it stands)} of the first part of the arc, with the rock and the
 pick of [Rojek 2014]."""
-FIRST_TIME = 0.05
-"""s of cutting: a way of 57 mm, into chips of 25 to 30 mm."""
+SLIM = dict(COARSE, backing=0.04)
+WHOLE_CUT = "whole cut, discs 4 times as coarse"
+WHOLE = {
+    WHOLE_CUT: (SLIM, 32, None),
+    "whole cut, 10 times": (dict(SLIM, time_scale=10), 32, WHOLE_CUT),
+    "whole cut, mechanics 2.5 times as fast": (dict(SLIM, time_scale=2.5), 32, WHOLE_CUT)}
+"""The same of a whole cut."""
+COMPARED = {"first": (FIRST, 0.05), "whole": (WHOLE, 0.65)}
+"""{part: (cases, s of cutting)}: at first a way of 57 mm, into chips of 25 to 30 mm."""
 QUIET = dict(report="false", snapshot_period=1)
 MEASURED = {
     "mean force, kN/m": lambda run: 1e-3 * run.result("mean_cutting_force"),
@@ -74,27 +81,29 @@ def plan(words):
         for name, (_, values, seeds) in TURNS.items():
             found.update({(name, seed): (f"source-{name}-{seed}", dict(FAST, **values, seed=seed))
                           for seed in seeds})
-    if "first" in words:
-        cases = [(number, case, seed) for number, (case, (_, packings, _)) in enumerate(FIRST.items())
+    for part, (compared, time) in COMPARED.items():
+        if part not in words:
+            continue
+        cases = [(number, case, seed) for number, (case, (_, packings, _)) in enumerate(compared.items())
                  for seed in range(1, 1 + packings)]
         # As large a part of each case as of the others is there at any time.
-        cases.sort(key=lambda one: one[2] / FIRST[one[1]][1])
-        found.update({(case, seed): (f"first-{number}-{seed}", dict(
-            {**WINDOW, **QUIET, **FIRST[case][0]}, cut_time=FIRST_TIME, cycles=1, seed=seed))
+        cases.sort(key=lambda one: one[2] / compared[one[1]][1])
+        found.update({(case, seed): (f"{part}-{number}-{seed}", dict(
+            {**WINDOW, **QUIET, **compared[case][0]}, cut_time=time, cycles=1, seed=seed))
             for number, case, seed in cases})
     return found
 
 
-def first_tables(found):
-    """Lines: the first part of the arc in each case, and over that beside which it stands."""
-    cases = {case: [run for (one, _), run in found.items() if one == case] for case in FIRST}
+def case_tables(found, compared):
+    """Lines: each of the cases `compared`, and over that beside which it stands."""
+    cases = {case: [run for (one, _), run in found.items() if one == case] for case in compared}
     numbers = {case: {heading: list(map(number, runs)) for heading, number in MEASURED.items()}
                for case, runs in cases.items() if runs}
     lines = generated.table(["case", "packings", *MEASURED], (
         [case, len(next(iter(of.values()))), *map(generated.mean_cell, of.values())] for case, of in numbers.items()))
     return lines + ["Over another case:", "", *generated.table(["case", "over", *MEASURED], (
         [case, beside, *(ratio_cell(of[heading], numbers[beside][heading]) for heading in MEASURED)]
-        for case, of in numbers.items() if (beside := FIRST[case][2]) in numbers))]
+        for case, of in numbers.items() if (beside := compared[case][2]) in numbers))]
 
 
 def ratio_cell(values, reference):
@@ -181,8 +190,9 @@ def write(folder):
         with matplotlib.rc_context(plots.STYLE):
             figure(found).savefig(folder / "dredging.png")
         generated.record(folder / "dredging.png")
-    if any(name in FIRST for name, _ in found):
-        lines += ["", f"## The first {FIRST_TIME:g} s", "", *first_tables(found)]
+    for compared, time in COMPARED.values():
+        if any(name in compared for name, _ in found):
+            lines += ["", f"## The first {time:g} s", "", *case_tables(found, compared)]
     return generated.write_page(folder / "dredging.md", lines, [run.path for run in found.values()])
 
 

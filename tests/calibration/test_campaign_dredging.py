@@ -31,9 +31,10 @@ def test_runs_differ_by_what_their_case_says_alone():
     assert len({folder for folder, _ in runs.values()}) == len(runs)
     assert all(f"--{name} " in known for _, values in runs.values() for name in values)
     window = runs["window", 2][1]
-    for case, (differs, packings, beside) in dredging.FIRST.items():
-        assert runs[case, 2][1] == {**window, **differs} and (case, packings) in runs
-        assert beside is None or beside in dredging.FIRST
+    for compared, time in dredging.COMPARED.values():
+        for case, (differs, packings, beside) in compared.items():
+            assert runs[case, 2][1] == {**window, **differs, "cut_time": time} and (case, packings) in runs
+            assert beside is None or beside in compared
     slab = sum(window[f"window_{side}"] for side in ("behind", "ahead")) / 16
     assert runs[dredging.REFERENCE, 1][1]["window_ahead"] > 2 * window["window_ahead"] and slab > 2 * 1.5e-3
 
