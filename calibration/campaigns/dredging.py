@@ -49,8 +49,7 @@ FIRST = {
     "coarse, mechanics 2.5 times as fast": (dict(COARSE, time_scale=2.5), 40, COARSE_WINDOW),
     "coarse, 10 times": (dict(COARSE, time_scale=10), 40, COARSE_WINDOW),
     "coarse, backing of 40 mm, not 60": (dict(COARSE, backing=0.04), 40, COARSE_WINDOW),
-    "coarse, step 0.5 of the critical one": (dict(COARSE, time_step_fraction=0.5), 40, COARSE_WINDOW),
-    "coarse, mechanics as fast as the process": (dict(COARSE, time_scale=1), 40, COARSE_WINDOW)}
+    "coarse, step 0.5 of the critical one": (dict(COARSE, time_step_fraction=0.5), 40, COARSE_WINDOW)}
 """{case: (what differs, packings, the case beside which it stands)} of the first part of the arc, with the rock and the
 pick of [Rojek 2014]."""
 SLIM = dict(COARSE, backing=0.04)
@@ -58,7 +57,9 @@ WHOLE_CUT = "whole cut, discs 4 times as coarse"
 WHOLE = {
     WHOLE_CUT: (SLIM, 32, None),
     "whole cut, 10 times": (dict(SLIM, time_scale=10), 32, WHOLE_CUT),
-    "whole cut, mechanics 2.5 times as fast": (dict(SLIM, time_scale=2.5), 32, WHOLE_CUT)}
+    "whole cut, mechanics 2.5 times as fast": (dict(SLIM, time_scale=2.5), 32, WHOLE_CUT),
+    "whole cut, mechanics as fast as the process": (dict(SLIM, time_scale=1), 32, WHOLE_CUT),
+    "whole cut, long window": ({**SLIM, **LONG}, 32, WHOLE_CUT)}
 """The same of a whole cut."""
 COMPARED = {"first": (FIRST, 0.05), "whole": (WHOLE, 0.65)}
 """{part: (cases, s of cutting)}: at first a way of 57 mm, into chips of 25 to 30 mm."""
