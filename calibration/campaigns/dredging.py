@@ -5,9 +5,9 @@
 `turns`: three turns of [Rojek 2014, 5] and of the models of [Rojek 2003, 12], discs of 1 to 1.5 mm (about an hour
 each). `first`: the first part of the arc, in a window and in one so long that nothing enters that the pick could feel
 or meet, at other rates of the mechanics, steps and sizes of discs. `whole`: a whole cut in coarse discs, at other
-rates of the mechanics. Without any of these words: all. N runs at a time (2), or as many as a dask scheduler's workers
-take; a folder a run; finished runs are not repeated, so that an interrupted campaign resumes. --read starts no run and
-evaluates those that exist. Writes into DIR dredging.md, dredging.png and provenance.json.
+rates of the mechanics and in other windows. Without any of these words: all. N runs at a time (2), or as many as a
+dask scheduler's workers take; a folder a run; finished runs are not repeated, so that an interrupted campaign resumes.
+--read starts no run and evaluates those that exist. Writes into DIR dredging.md, dredging.png and provenance.json.
 """
 import math
 import sys
@@ -25,7 +25,7 @@ from rockwear.report import palette, plots
 SCRIPT, PARTS = "yade_scripts/dredge_pick.py", ("turns", "first", "whole")
 WINDOW = dict(scale_factor=1, window_behind=0.06, window_ahead=0.14, time_step_fraction=0.95)
 FAST = dict(WINDOW, backing=0.04, time_scale=10)
-"""Three turns within the hour. What the thinner backing and the faster mechanics change is part of `first`."""
+"""Three turns within the hour. What its window and the faster mechanics change is part of `whole`."""
 ROCK_2003 = dict(kt=20e9, Rt=1e6, mu=0.839, hardness_table="MET91", wear_coefficient=0.01128)
 WORN_2003 = dict(ROCK_2003, wear_acceleration=7000, hardness_temperature=293)
 TURNS = {
