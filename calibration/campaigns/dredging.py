@@ -52,7 +52,7 @@ FIRST = {
     "coarse, step 0.5 of the critical one": (dict(COARSE, time_step_fraction=0.5), 40, COARSE_WINDOW)}
 """{case: (what differs, packings, the case beside which it stands)} of the first part of the arc, with the rock and the
 pick of [Rojek 2014]."""
-SLIM = dict(COARSE, backing=0.04)
+SLIM = dict(COARSE, backing=FAST["backing"])
 WHOLE_CUT = "whole cut, discs 4 times as coarse"
 WHOLE = {
     WHOLE_CUT: (SLIM, 32, None),
