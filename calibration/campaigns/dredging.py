@@ -158,13 +158,13 @@ def turn_tables(found):
     for (name, seed), run in found.items():
         if name not in TURNS:
             continue
-        energy, loop = run.summary["balances"]["energy"], run.summary["wall_time"]["loop"]
+        energy, wall = run.summary["balances"]["energy"], run.summary["wall_time"]["total"]
         lines += [f"### {TURNS[name][0]}, packing {seed}", "", *generated.table(
             ["turn", "mean force, kN/m", "mean thrust, kN/m", "friction at the pick, kJ/m", "into the pick, kJ/m",
              "hottest 1 %, K above the water", "by hand", "hottest particle", "mass lost, %"], turn_rows(run)),
             f"{run.result('rock_particles')} rock particles at a time; specific energy "
             f"{1e-6 * run.result('specific_energy'):.3g} MJ/m³; energy misses "
-            f"{100 * abs(energy['residual']) / energy['tool_work']:.2g} % of the tool's work; {loop / 60:.0f} min of "
+            f"{100 * abs(energy['residual']) / energy['tool_work']:.2g} % of the tool's work; {wall / 60:.0f} min of "
             "wall time.", ""]
     return lines
 

@@ -1,6 +1,6 @@
 """What bond laws and rock properties do to a rock, and whether a rock stays the same as its discs become finer.
 
-    python3 -m calibration.campaigns.rock_laws DIR [laws|resolution|softening|kept|powers|relations ...] [--read]
+    python3 -m calibration.campaigns.rock_laws DIR [laws|resolution|softening|kept|powers|graded|relations ...] [--read]
         [--jobs N | --scheduler ADDRESS]
 
 N runs at a time (2), or as many as a dask scheduler's workers take; a folder a run; finished runs are not repeated, so
@@ -73,6 +73,10 @@ KEPT_BOX, KEPT_SIZE = dict(width=0.04, height=0.02), 0.02
 """Of its specimens at those radii; they are as much larger or smaller as the discs are, for it is the radius over the
 length E G_f/strength^2 of the rock that counts."""
 
+GRADINGS, GRADED_BOX, GRADED_SIZE = (1.0, 2.0, 3.0), dict(width=0.08, height=0.06), 0.04
+"""Factors by which radii grow below a quarter of a specimen's height over as much again, on a side that is not loaded,
+and ahead of the crack from the coarse discs to the fine ones."""
+
 
 def at_size(values, factor, power=0.0):
     """Values of a rock whose packing is `factor` times as coarse. The fracture energy and stresses are the rock's, the
@@ -96,6 +100,9 @@ CASES = {
              (1, 2, 3, 4, 5), (0.0,)),
     "powers": ({f"strengths as radius^{POWER:g}, r = {radius:g} mm": at_size(ROCK, factor, POWER)
                 for radius, factor in FINENESS.items()}, (1, 2, 3, 4, 5), (0.0,)),
+    "graded": ({f"0.6 mm, graded by {grading:g}": dict(
+        at_size(ROCK, FINENESS[0.6], POWER), grading_factor=grading, bond_tension_power=POWER, bond_cohesion_power=POWER)
+                for grading in GRADINGS}, (1, 2, 3, 4, 5), (0.0,)),
     "relations": ({f"kt/kn = {ratio:g}, gap {gap:g} mm": dict(ROCK, kt=ratio * 20e9, bonding_gap=1e-3 * gap)
                    for gap in (0.0, 0.1, 0.2) for ratio in (0.05, 0.2, 0.4, 0.7, 1.0)}, (1, 2, 3), (0.0,)),
 }
@@ -110,7 +117,7 @@ def tests(campaign, values, seed):
     """{test: (script, parameters)} of one packing of a rock."""
     confinements, blocked = CASES[campaign][2], values.get("rotation")
     box, size = {"resolution": (SMALL_BOX, SMALL_SIZE), "softening": (LARGE_BOX, None),
-                 "kept": (KEPT_BOX, KEPT_SIZE)}.get(campaign, (BOX, SIZE))
+                 "kept": (KEPT_BOX, KEPT_SIZE), "graded": (GRADED_BOX, GRADED_SIZE)}.get(campaign, (BOX, SIZE))
     coarsest = {"kept": KEPT_RADII[1], "powers": COARSEST}.get(campaign)
     if coarsest:
         # The same packings at all radii.
@@ -122,8 +129,11 @@ def tests(campaign, values, seed):
     found = {f"confined {1e-6 * confinement:g}": (CONFINED, dict(common, **box, speed=SPEED, confinement=confinement))
              for confinement in confinements}
     found["tension"] = UNIAXIAL, dict(common, **box, speed=PULL, test="tension")
-    if campaign in ("laws", "resolution", "kept", "powers") and not blocked:
+    if campaign in ("laws", "resolution", "kept", "powers", "graded") and not blocked:
         found["toughness"] = TOUGHNESS, dict(common, size=size)
+    if campaign == "graded":
+        for _, of in found.values():
+            of["fine_depth"] = 0.25 * of.get("height", 1.25 * size)
     return found
 
 
@@ -246,6 +256,7 @@ TITLES = {"laws": "What bond laws and rock properties do", "resolution": "The sa
           "softening": "Fracture energy at the same discs",
           "kept": "A rock whose strengths follow the radius of its discs",
           "powers": "Bare discs whose strengths follow the radius",
+          "graded": "Rock that grows coarser across the specimen",
           "relations": "Dimensionless relations"}
 
 

@@ -47,7 +47,7 @@ LOOK_IN_SPACE = 2
 """Steps between looks at softening bonds in space, where steps are long against the time in which a bond opens: with 10
 the energy balance misses 5 %, with 3 0.6 %, with 2 less."""
 
-IN_THE_PLANE = parameters.SPECIMEN.without("grading_factor", "fine_depth")
+IN_THE_PLANE = parameters.SPECIMEN
 IN_SPACE = parameters.BLOCK.without("scale_factor", "full", "gravity")
 """The specimen."""
 
@@ -113,7 +113,8 @@ class SpecimenTest(Scene):
             return Block(depth=v.depth, radius=v.radius, **common)
         require(v.radius_max >= v.radius_min, "radius_max", v.radius_max, f"at least radius_min = {v.radius_min:g}",
                 "m")
-        return Specimen(radius_min=v.radius_min, radius_max=v.radius_max, **common)
+        return Specimen(radius_min=v.radius_min, radius_max=v.radius_max, grading_factor=v.grading_factor,
+                        fine_depth=v.fine_depth, **common)
 
     def _ends(self):
         """Indices of the particles of the left and of the right platen."""

@@ -24,14 +24,15 @@ WITHOUT = {"width", "height", "grading_factor", "fine_depth", "velocity", "depth
            "cycles"}
 """Parameters of a straight cut through a box."""
 ROCK = (
-    Parameter("full", False, "", flag, "the defaults of scale_factor and backing that give the source's 92,000 discs"),
+    Parameter("full", False, "", flag, "the defaults of scale_factor, backing and window that give the source's 92,000 "
+              "discs"),
     Parameter("backing", 0.06, "m", above_zero, "rock behind the path of the pick, fixed at its far side"),
+    Parameter("window", True, "", flag, "rock only near the tip, in a window that moves along with the pick; false: "
+              "all rock along the path is there from the start"),
+    Parameter("window_behind", 0.12, "m", above_zero, "length of the window behind the tip", when={"window": (True,)}),
+    Parameter("window_ahead", 0.14, "m", above_zero, "its length ahead of the tip", when={"window": (True,)}),
     Parameter("run_out", 0.06, "m", above_zero, "rock ahead of the pick at the end of the cut",
-              when={"window_ahead": (0.0,)}),
-    Parameter("window_behind", 0.0, "m", number(0), "length behind the tip of a window of rock that moves along with "
-              "the pick"),
-    Parameter("window_ahead", 0.0, "m", number(0), "its length ahead of the tip; 0: no window, all rock is there from "
-              "the start"),
+              when={"window": (False,)}),
     Parameter("scale_factor", 4.0, "", number(1, 10), "factor on the radii of rock and, for the same macroscopic "
               "strength, on the strengths of its bonds; 1: the source's"))
 MOTION = (
@@ -59,7 +60,7 @@ def groups(full=False):
         own = {"rock": ROCK, "motion": MOTION}.get(group.title, ())
         kept = tuple(p for p in group.parameters if p.name not in WITHOUT)
         found.append(Group(group.title, (*own, *kept), group.when))
-    size = dict(scale_factor=1.0, backing=0.436) if full else {}
+    size = dict(scale_factor=1.0, backing=0.436, window=False) if full else {}
     return parameters.with_defaults(
         [*found, OUTPUT], kt=4e9, Rn=0.1e6, Rt=0.1e6, mu=0.8, tooth_height=0.15, tooth_width=0.15, rake=10.0,
         clearance=20.0,
@@ -84,8 +85,8 @@ def make(values):
     `backing` behind its own path. Each turn is a cut of `cut_time` and cooling for the rest of 2 pi /
     angular_velocity. While nothing touches the tool the mechanics stand still, and only heat flows.
 
-    With window_ahead the rock is a rock mass along an arc: it goes on behind the entry, below the pick's path, and
-    ahead of the end of the cut. Only the part of it near the tip is there, held by an absorbing boundary at its ends
+    With a window the rock is a rock mass along an arc: it goes on behind the entry, below the pick's path, and ahead of
+    the end of the cut. Only the part of it near the tip is there, held by an absorbing boundary at its ends
     and at its far side. Its particles grow with the distance from the arc's centre. Each turn begins anew with the
     window that the approach left: what slabs took along in the turn before, chips and cracks, is gone.
     """
@@ -97,7 +98,7 @@ def make(values):
     check_cut(v, turn_time)
     vertices = parts.outline(v)
     track = Track(v, vertices)
-    window = track.window(v) if v.window_ahead else None
+    window = track.window(v) if v.window else None
     rock = parts.bond(window.rock, v) if window else track.rock(v)
     programme = Turns(motion=track.motion(v.time_scale),
                       approach_time=v.approach / (v.cutter_radius * v.angular_velocity), cut_time=v.cut_time,
@@ -120,16 +121,14 @@ def check_cut(v, turn_time):
             f"is thicker than a rock particle, {2 * v.radius_max:g}", "m")
     require(v.backing > 6 * v.radius_max, "backing", v.backing,
             f"more than three rock particles, {6 * v.radius_max:g}", "m")
-    if v.window_ahead:
+    if v.window:
         check_window(v)
-    else:
-        require(not v.window_behind, "window_behind", v.window_behind, "left out without window_ahead", "m")
 
 
 def check_window(v):
     """Raise ParameterError for a window in which there is no room for the cut."""
     require(v.window_ahead >= 2 * v.feed, "window_ahead", v.window_ahead,
-            f"0, or at least twice feed = {v.feed:g}: chips are longer than they are thick", "m")
+            f"at least twice feed = {v.feed:g}: chips are longer than they are thick", "m")
     require(v.window_behind >= v.feed, "window_behind", v.window_behind, f"at least feed = {v.feed:g}", "m")
     slab = (v.window_behind + v.window_ahead) / SLABS
     require(slab >= 2 * v.radius_max, "window_ahead", v.window_ahead,

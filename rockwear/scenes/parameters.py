@@ -45,9 +45,10 @@ BLOCK = Group("rock", (
 BOND_PARAMETERS = (
     Parameter("bond_law", "brittle", "", choice(*BOND_LAWS), "force law of a bond", "[Rojek 2003, ch. 4]"),
     *law_parameters(BOND_LAWS, "bond_law"),
-    Parameter("bonding_gap", 1e-4, "m", number(0), "largest gap that is bonded",
+    Parameter("bonding_gap", 1e-4, "m", zero_or(1e-8, 1), "largest gap that is bonded",
               "[Rojek 2014, eq. 6]; the value is ours", size_power=(1, 1)),
-    Parameter("weibull_modulus", 0.0, "", number(0), "of the scatter of bond strengths about their mean; 0: none"),
+    Parameter("weibull_modulus", 0.0, "", zero_or(0.5, 1000),
+              "of the scatter of bond strengths about their mean; 0: none"),
     Parameter("rotation", "free", "", choice("free", "blocked"), "of the rock's particles; blocked: none ever turns, "
               "they interlock as grains do in the crudest way"),
     Parameter("grain_edge", 0.0, "m", number(0), "mean edge of grains, Voronoi cells of particles; 0: no grains",

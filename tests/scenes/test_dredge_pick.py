@@ -10,7 +10,7 @@ from tests.running import (
     ROOT, arguments, assert_as_if_never_stopped, assert_refused, finish, history, refusals, run_script, start, value)
 
 SCRIPT = ROOT / "yade_scripts/dredge_pick.py"
-TINY = dict(cut_time=0.016, cycles=2, tool_radius_min=2e-3, tool_radius_max=2e-3, record_period=5e-4,
+TINY = dict(window="false", cut_time=0.016, cycles=2, tool_radius_min=2e-3, tool_radius_max=2e-3, record_period=5e-4,
             cooling_period=0.02, snapshot_period=0.25, wear_acceleration=4e5)
 
 
@@ -115,15 +115,16 @@ def checkpoint_stage(out):
         return -1
 
 
+IN_WINDOW = dict(window="true")
 REFUSED = [
     (dict(cut_time=4), "cut_time = 4"), (dict(feed=0.01), "feed = 0.01"), (dict(backing=0.01), "backing = 0.01"),
     (dict(entry_angle=140, cut_time=0.6), "cut_time = 0.6"),
     (dict(tooth_height=0.05, clearance=1), "tooth_height = 0.0499988"),
-    (dict(window_ahead=0.1, window_behind=0.1), "window_ahead = 0.1"),
-    (dict(window_ahead=0.2, window_behind=0.05), "window_behind = 0.05"),
-    (dict(window_behind=0.05), "window_behind = 0.05 m: must be left out without window_ahead"),
-    (dict(window_ahead=0.2, window_behind=0.1, run_out=0.05), "run_out = 0.05 m: must be left out with window_ahead"),
-    (dict(window_ahead=0.12, window_behind=0.07), "window_ahead = 0.12")]
+    (dict(IN_WINDOW, window_ahead=0.1), "window_ahead = 0.1"),
+    (dict(IN_WINDOW, window_behind=0.05), "window_behind = 0.05"),
+    (dict(IN_WINDOW, window_ahead=0.12, window_behind=0.07), "window_ahead = 0.12"),
+    (dict(window_behind=0.1), "window_behind = 0.1 m: must be left out with window"),
+    (dict(IN_WINDOW, run_out=0.05), "run_out = 0.05 m: must be left out with window")]
 
 
 def test_bad_input_is_refused_in_one_line(tmp_path):

@@ -53,6 +53,17 @@ def test_compression_alone_never_breaks_a_bond_in_tension(tmp_path):
     assert value(run, "peak_stress") == pytest.approx(20e9 * 0.05 * 4e-3 / 2e-3, rel=5e-3)
 
 
+def test_rock_that_grows_coarser_across_the_specimen_stays_the_same_rock(tmp_path):
+    rock = dict(radius_min=5e-4, radius_max=7e-4, width=0.03, height=0.03, fine_depth=0.008, bond_law="cohesive",
+                kt=8e9, bond_tension_power=0.12, bond_cohesion_power=0.12, report="false")
+    uniform, graded = (run_script(SCRIPT, *arguments({**rock, "grading_factor": factor}), "--out",
+                                  str(tmp_path / str(factor)), out=tmp_path / str(factor)) for factor in (1, 2.5))
+    assert uniform.code == graded.code == 0, graded.stderr
+    assert value(graded, "rock_particles") < 0.5 * value(uniform, "rock_particles")
+    assert value(graded, "youngs_modulus") == pytest.approx(value(uniform, "youngs_modulus"), rel=0.08)
+    assert value(graded, "peak_stress") == pytest.approx(value(uniform, "peak_stress"), rel=0.15)
+
+
 @pytest.mark.parametrize("strain, names", [(0.9e-3, "strengths and moduli"), (1.5e-3, "youngs_modulus")])
 def test_what_a_coarse_record_does_not_tell_is_said(tmp_path, strain, names):
     run = laboratory(tmp_path / "out", **{**CHAIN, "strain_max": strain}, record_strain=1e-3)

@@ -24,7 +24,7 @@ from collections import namedtuple
 import numpy as np
 
 from rockwear.kernels.checks import not_negative, positive, require
-from rockwear.kernels.parameter import Parameter, above_zero, number, stiffness
+from rockwear.kernels.parameter import Parameter, above_zero, stiffness, zero_or
 
 BOND_LAWS = {}
 """{name: class} of all laws."""
@@ -37,7 +37,8 @@ RN = Parameter("Rn", 0.1e6, "N", above_zero, "tensile strength of a bond", "[Roj
 RT = Parameter("Rt", 1e6, "N", above_zero, "shear strength of a bond", "[Rojek 2003, 5.1]", size_power=(1, 2))
 SLOPE = Parameter("H", 1e10, "N/m", above_zero, "slope of softening, against total displacement", "[Rojek 2003, 4.6]",
                   size_power=(0, 1))
-MU = Parameter("mu", 0.839, "", number(0), "friction between rock particles after breakage", "[Rojek 2003, 5.1]")
+MU = Parameter("mu", 0.839, "", zero_or(1e-3, 100), "friction between rock particles after breakage",
+               "[Rojek 2003, 5.1]")
 """KN to MU: parameters that several laws share."""
 
 _ORIGIN = (0.0, 0.0, 0.0)
