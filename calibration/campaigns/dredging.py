@@ -61,7 +61,8 @@ WHOLE = {
     "whole cut, mechanics as fast as the process": (dict(SLIM, time_scale=1), 32, WHOLE_CUT),
     "whole cut, long window": ({**SLIM, **LONG}, 32, WHOLE_CUT),
     "whole cut, backing of 120 mm, not 40": (dict(SLIM, backing=0.12), 32, WHOLE_CUT),
-    "whole cut, 0.12 m behind the pick, not 0.06": (dict(SLIM, window_behind=0.12), 32, WHOLE_CUT)}
+    "whole cut, 0.12 m behind the pick, not 0.06": (dict(SLIM, window_behind=0.12), 32, WHOLE_CUT),
+    "whole cut, 0.12 m behind, backing of 60 mm: the default": (dict(COARSE, window_behind=0.12), 32, WHOLE_CUT)}
 """The same of a whole cut."""
 COMPARED = {"first": (FIRST, 0.05), "whole": (WHOLE, 0.65)}
 """{part: (cases, s of cutting)}: at first a way of 57 mm, into chips of 25 to 30 mm."""

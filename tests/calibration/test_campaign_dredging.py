@@ -71,7 +71,7 @@ class Turns(Pick):
                "tool_friction": [1e3, 3e3, 3e3, 5e3, 8e3, 8e3], "pick_friction_heat": [8e2, 2e3, 2e3, 3e3, 6e3, 6e3],
                "tool_temperature_hot": [284, 285, 283, 287, 286, 283], "mass_lost": [0, 0.01, 0.01, 0.02, 0.03, 0.03],
                "tool_temperature_max": [290, 288, 283, 295, 299, 283]}
-    summary = {"balances": {"energy": {"residual": -20.0, "tool_work": 1e4}}, "wall_time": {"loop": 120.0}}
+    summary = {"balances": {"energy": {"residual": -20.0, "tool_work": 1e4}}, "wall_time": {"total": 120.0}}
 
     def column(self, name):
         return np.array(self.columns[name], float)
