@@ -23,7 +23,8 @@ LAYERS = {
     # A command that runs scenes and draws; no scene imports it.
     "calibration/laboratory/envelope.py": (
         {"rockwear.kernels", "rockwear.report", "calibration.campaigns.runs", "calibration.command",
-         "calibration.generated", "calibration.laboratory.strength_table"}, PAPER),
+         "calibration.generated", "calibration.laboratory.envelope_figure",
+         "calibration.laboratory.strength_table"}, PAPER),
     "calibration/laboratory": (
         {"rockwear.kernels", "rockwear.model", "rockwear.engines", "rockwear.run", "rockwear.report", "rockwear.scenes",
          "calibration.laboratory"}, YADE),

@@ -1,13 +1,14 @@
 """Campaign of grains: the Hawkesbury sandstone of [Bahaaddini 2018], and the parameter study around it.
 
-    python3 -m calibration.campaigns.grains DIR [calibrated|study ...] [--read]
+    python3 -m calibration.campaigns.grains DIR [calibrated|study ...] [--read | --stored]
         [--jobs N | --scheduler ADDRESS]
 
 N runs at a time (2), or as many as a dask scheduler's workers take; a folder a run; finished runs are not repeated, so
 that an interrupted campaign resumes. --read starts no run and evaluates those that exist. Writes into DIR grains.csv
 (strengths and moduli of every run), grains.md (tables), hawkesbury.json (the rock file with what was measured), the
-figures and provenance.json.
+figures and provenance.json. --stored needs no runs: it draws grains_envelope.png of the strengths in DIR/grains.csv.
 """
+import csv
 import json
 import sys
 from pathlib import Path
@@ -129,11 +130,22 @@ def write(folder):
     written[1].write_text(json.dumps(rock_data, indent=1) + "\n", encoding="utf-8")
     own = {(test, seed): run for (name, _, test, seed), run in runs.items() if not name}
     with matplotlib.rc_context(plots.STYLE):
-        for name, figure in figures.drawn(own, points):
+        for name, figure in figures.drawn(own, points, rows):
             written.append(folder / f"{name}.png")
             figure.savefig(written[-1])
     generated.record(*filter(Path.exists, written))
     return generated.write_page(folder / "grains.md", tables.page(rows, measured, points))
+
+
+def stored(folder):
+    """Draw grains_envelope.png of the folder's grains.csv. -> its table, in Markdown. Raises OSError."""
+    with open(folder / "grains.csv", newline="", encoding="utf-8") as file:
+        rows = [{**row, "peak_stress": float(row["peak_stress"])} for row in csv.DictReader(file)]
+    written = folder / "grains_envelope.png"
+    with matplotlib.rc_context(plots.STYLE):
+        figures.envelope(rows).savefig(written)
+    generated.record(written)
+    return "\n".join(tables.beside_the_laboratory(rows))
 
 
 def _line(key, run):
@@ -142,8 +154,15 @@ def _line(key, run):
 
 
 def main(folder, words, **where):
-    """where: options of Runs. -> exit code: 1 where a run failed."""
+    """where: options of Runs. -> exit code: 1 where a run failed, 2 where nothing is stored."""
     failed = 0
+    if "--stored" in words:
+        try:
+            print(stored(folder))
+        except OSError as error:
+            print(f"error: DIR = {folder} must hold grains.csv ({error.strerror})", file=sys.stderr)
+            return 2
+        return 0
     if "--read" not in words:
         with Runs(folder, keep=True, **where) as runs:
             jobs = {key: runs.start(place, script, **values)
@@ -155,5 +174,5 @@ def main(folder, words, **where):
 
 
 if __name__ == "__main__":
-    place, words, where = command_line(__spec__.name, CAMPAIGNS)
+    place, words, where = command_line(__spec__.name, CAMPAIGNS, ("--read", "--stored"))
     sys.exit(main(place, words, **where))

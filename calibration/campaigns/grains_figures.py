@@ -1,19 +1,22 @@
-"""Figures of the campaign of grains: curves and failure over confinement, and one for each parameter of the study."""
+"""Figures of the campaign of grains: strengths, curves and failure over confinement, and one for each parameter of the
+study."""
 import numpy as np
 from matplotlib.collections import LineCollection
 
-from calibration.campaigns.grains_tables import ELASTIC, STATED, STRENGTHS, trend_of
+from calibration.campaigns.grains_tables import ELASTIC, STATED, STRENGTHS, table_2_fits, tested, trend_of
 from calibration.campaigns.uniaxial_figures import CRACK, limits_of, thinned
-from rockwear.report import shapes
+from calibration.laboratory import envelope_figure
+from rockwear.report import palette, published, shapes
 from rockwear.report.plots import MM, canvas, discs, frame
 
 ARROWS = {"rises": "↗", "falls": "↘", "unchanged": "→"}
 
 
-def drawn(own, points):
+def drawn(own, points, rows):
     """(name, Figure) of all that the runs allow. own: {(test, seed): RunFolder} of the calibrated rock; points:
-    {parameter: as of grains_tables.points}."""
+    {parameter: as of grains_tables.points}; rows: as of grains_tables.row_of."""
     if own:
+        yield "grains_envelope", envelope(rows)
         yield "grains_curves", curves(own)
         yield "grains_failure", failures(own)
     for parameter, by_property in points.items():
@@ -30,6 +33,22 @@ def pressure(test):
 def compressions(own):
     """Tests in compression, by confinement."""
     return sorted({test for test, _ in own if test != "tension"}, key=pressure)
+
+
+def envelope(rows):
+    """Strengths of the calibrated rock beside table 2 of [Bahaaddini 2018], as its fig. 10."""
+    laboratory = _of_source("laboratory", "laboratory [Bahaaddini 2018]", palette.PUBLISHED)
+    model = _of_source("model", "model of [Bahaaddini 2018]", palette.EXACT)._replace(width=envelope_figure.THIN)
+    ours = envelope_figure.of_packings("ours", palette.SIMULATED, *tested(rows))
+    line = laboratory.fits[0]
+    return envelope_figure.figure([ours, laboratory, model],
+                                  envelope_figure.Reference("the laboratory's line", line.sigma1))
+
+
+def _of_source(of, words, colour):
+    """Strengths of "laboratory" or "model" by table 2, whose tests under confinement are in lines alone."""
+    tension, ucs = (published.value(f"v-table2-{name}-{of}") for name in ("tensile_strength", "ucs"))
+    return envelope_figure.Strengths(words, colour, tests=((-tension, 0.0), (0.0, ucs)), fits=table_2_fits(of))
 
 
 def curves(own):

@@ -7,8 +7,9 @@ import numpy as np
 from calibration import generated
 from calibration.campaigns.trends import trend, verdict
 from calibration.campaigns.uniaxial_tables import shown
+from calibration.laboratory import envelope_figure
 from rockwear.kernels.checks import ParameterError
-from rockwear.kernels.strength_envelope import hoek_brown, mohr_coulomb
+from rockwear.kernels.strength_envelope import Estimate, HoekBrown, MohrCoulomb, hoek_brown, mohr_coulomb
 from rockwear.report import published
 
 PROPERTIES = {"ucs": ("UCS, MPa", 1e-6, 0.05, True), "youngs_modulus": ("E, GPa", 1e-9, 0.05, True),
@@ -154,6 +155,21 @@ def table_2_value(name, of):
     return PROPERTIES[name][1] * published.value(f"v-table2-{name}-{of}")
 
 
+def table_2_fits(of):
+    """(MohrCoulomb, HoekBrown) of [Bahaaddini 2018, table 2]. of: "laboratory" or "model"."""
+    names = ("cohesion", "friction_angle"), ("hoek_brown_m", "hoek_brown_sigma_ci")
+    return tuple(kind(*(Estimate(published.value(f"v-table2-{name}-{of}"), math.nan) for name in pair), math.nan)
+                 for kind, pair in zip((MohrCoulomb, HoekBrown), names))
+
+
+def tested(rows):
+    """(points, tension) of the calibrated rock, as envelope_figure.of_packings takes them."""
+    own = [row for row in rows if not row["parameter"]]
+    points = [{"sigma3": 1e6 * float(row["test"].split()[0]) if "MPa" in row["test"] else 0.0, "seed": row["seed"],
+               "peak_stress": row["peak_stress"]} for row in own if row["test"] != "tension"]
+    return points, [row["peak_stress"] for row in own if row["test"] == "tension"]
+
+
 def reached(name, value):
     """Whether the value, in the units of PROPERTIES, is within the tolerance."""
     _, _, tolerance, relative = PROPERTIES[name]
@@ -191,10 +207,24 @@ def confined(rows):
                             "of them shear, %", "largest energy residual, %"], lines)
 
 
+def beside_the_laboratory(rows):
+    """Lines of a table of the calibrated rock's strengths beside the laboratory's line and curve."""
+    means = envelope_figure.of_packings("", "", *tested(rows)).means
+    compared = [(fit.sigma1, envelope_figure.off(means, fit.sigma1)) for fit in table_2_fits("laboratory")]
+    lines = []
+    for k, mean in enumerate(mean for mean in means if mean.sigma3 >= 0):
+        cells = [[f"{1e-6 * float(sigma1(mean.sigma3)):.1f}", "{1:+.1f} ± {2:.1f} %".format(*found[k])]
+                 for sigma1, found in compared]
+        lines.append([f"{1e-6 * mean.sigma3:g}", f"{1e-6 * mean.sigma1:.1f} ± "
+                      f"{1e-6 * mean.deviation / math.sqrt(mean.tests):.1f}", mean.tests, *cells[0], *cells[1]])
+    return generated.table(["σ3, MPa", "σ1 ± standard error, MPa", "packings", "laboratory's line, MPa", "ours off it",
+                            "laboratory's curve, MPa", "ours off it"], lines)
+
+
 def page(rows, found, points_of):
     """Lines of the generated page."""
     lines = ["### Table 2 of [Bahaaddini 2018]", "", *table_2(found), "### The calibrated rock over confinement", "",
-             *confined(rows)]
+             *confined(rows), "### Strengths beside the laboratory's line and curve", "", *beside_the_laboratory(rows)]
     table = trends(points_of)
     if table:
         agree = [line[-1] for line in table if line[-1] != "–"]

@@ -20,10 +20,10 @@ import numpy as np
 from calibration import generated
 from calibration.campaigns.runs import RunFailed, Runs
 from calibration.command import Parser, made
-from calibration.laboratory import strength_table
+from calibration.laboratory import envelope_figure, strength_table
 from rockwear.kernels.checks import ParameterError, require
 from rockwear.kernels.parameter import integer, listed, numbers
-from rockwear.kernels.strength_envelope import hoek_brown, mohr_coulomb
+from rockwear.kernels.strength_envelope import Estimate, HoekBrown, MohrCoulomb, hoek_brown, mohr_coulomb
 from rockwear.report import palette, plots
 
 CONFINED, UNIAXIAL = "yade_scripts/triaxial.py", "yade_scripts/uniaxial.py"
@@ -80,43 +80,20 @@ def _plain(fit):
 
 
 def draw(ours, laboratory):
-    """sigma1 over sigma3: tests, both fits, and the laboratory's."""
-    figure, (axes,) = plots.canvas(8, 5.5)
-    largest = max(point["sigma3"] for point in ours["points"])
-    at = np.linspace(-1.1 * max([0.0, *ours["tensile_strengths"]]), 1.05 * largest, 400)
-    for found, colour, what in ((ours, palette.SIMULATED, "simulated"),
-                                (laboratory, palette.PUBLISHED, "laboratory")):
-        if found is None:
-            continue
-        x, y = ([point[name] / MPA for point in found["points"]] for name in ("sigma3", "peak_stress"))
-        axes.plot(x, y, "o", color=colour, markerfacecolor="none" if what == "laboratory" else colour, label=what)
-        if found["tensile_strengths"]:
-            axes.plot([-stress / MPA for stress in found["tensile_strengths"]], [0] * len(found["tensile_strengths"]),
-                      "s", color=colour, markersize=4)
-        for name, style, curve in (("Mohr-Coulomb", "--", line_of(found)), ("Hoek-Brown", "-", curve_of(found))):
-            if curve:
-                axes.plot(at / MPA, np.array(curve(at)) / MPA, style, color=colour, linewidth=1,
-                          label=f"{name}, {what}")
-    axes.set(xlabel="σ3 / MPa", ylabel="σ1 / MPa", ylim=(0, None))
-    axes.legend(loc="upper left")
-    return figure
+    """Figure of sigma1 over sigma3: tests, both fits, and the laboratory's."""
+    shown = [envelope_figure.of_packings("simulated", palette.SIMULATED, ours["points"], ours["tensile_strengths"],
+                                         fits_of(ours))]
+    if laboratory:
+        tests = tuple((point["sigma3"], point["peak_stress"]) for point in laboratory["points"])
+        shown.append(envelope_figure.Strengths("laboratory", palette.PUBLISHED, tests=tests, fits=fits_of(laboratory)))
+    return envelope_figure.figure(shown)
 
 
-def line_of(found):
-    """sigma1(sigma3), Pa, of the fitted line."""
-    line = found["mohr_coulomb"]
-    slope = np.tan(np.radians(45 + 0.5 * line["friction_angle"]["value"]))**2
-    return lambda sigma3: 2 * line["cohesion"]["value"] * np.sqrt(slope) + slope * sigma3
-
-
-def curve_of(found):
-    """sigma1(sigma3), Pa, of the fitted curve; None where there is none."""
-    curve = found["hoek_brown"]
-    if "refused" in curve:
-        return None
-    m, strength = curve["m_i"]["value"], curve["sigma_ci"]["value"]
-    return lambda sigma3: sigma3 + np.sqrt(np.where(m * sigma3 + strength > 0, m * strength * sigma3 + strength**2,
-                                                    np.nan))
+def fits_of(found):
+    """(MohrCoulomb, HoekBrown) of what `fitted` gives, as far as they are there."""
+    kinds = (MohrCoulomb, found["mohr_coulomb"]), (HoekBrown, found["hoek_brown"])
+    return tuple(kind(*(Estimate(**part[name]) if isinstance(part[name], dict) else part[name]
+                        for name in kind._fields)) for kind, part in kinds if "refused" not in part)
 
 
 def page(ours, laboratory):

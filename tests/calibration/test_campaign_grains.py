@@ -1,13 +1,18 @@
 """Campaign of grains: trends computed from numbers, table 2, and the plan of runs."""
+import csv
+import json
 import math
+import shutil
 
 import numpy as np
 import pytest
 from scipy.stats import linregress
 
-from calibration.campaigns import grains, grains_tables
+from calibration.campaigns import grains, grains_figures, grains_tables
 from calibration.campaigns.trends import trend, verdict
+from calibration.generated import ROOT
 
+RESULTS = ROOT / "calibration/results/grains"
 X = np.array([2.0, 2.0, 5.0, 5.0, 20.0, 20.0])
 NOISE = 1 + 0.02 * np.array([1, -1, 1, -1, 1, -1])
 
@@ -80,3 +85,42 @@ def test_the_study_varies_one_thing_at_a_time_around_the_rock_of_the_library():
     plan = grains.planned("study")
     assert len({place for place, *_ in plan.values()}) == len(plan)
     assert not set(grains.SEEDS) & {1, 2, 3, 4, 5}
+
+
+def stored():
+    """Rows of the strengths in calibration/results/grains."""
+    with open(RESULTS / "grains.csv", newline="", encoding="utf-8") as file:
+        return [{**row, "peak_stress": float(row["peak_stress"])} for row in csv.DictReader(file)]
+
+
+def test_the_envelope_is_drawn_with_the_numbers_of_table_2():
+    upper, lower = grains_figures.envelope(stored()).axes
+    drawn = {line.get_label(): line.get_xydata() for line in upper.lines}
+    line, curve = drawn["Mohr-Coulomb: c 4.9 MPa, φ 50.6°"], drawn["Hoek-Brown: m_i 30, σci 27.4 MPa"]
+    assert np.interp(10, *line.T) == pytest.approx(105.37, abs=0.01) and line[0] == pytest.approx((-1.9, 0))
+    # Two numbers of the curve by hand: 1 + sqrt(30 * 27.4 + 27.4²), 5 + sqrt(30 * 27.4 * 5 + 27.4²).
+    assert np.interp((1, 5), *curve.T) == pytest.approx((40.66, 74.72), abs=0.02)
+    assert drawn["laboratory [Bahaaddini 2018]"] == pytest.approx(np.array([(-1.9, 0), (0, 27.4)]))
+    assert drawn["model of [Bahaaddini 2018]"] == pytest.approx(np.array([(-1.44, 0), (0, 28.03)]))
+    means = upper.containers[0].lines[0].get_xydata()
+    assert means == pytest.approx(np.array([(-1.879, 0), (0, 27.78), (1, 37.09), (5, 71.75), (10, 105.54)]), abs=0.01)
+    assert lower.containers[0].lines[0].get_ydata() == pytest.approx((1.5, 5.4, 8.1, 0.2), abs=0.06)
+    # All tests of 25 packings, at four confinements and in tension.
+    assert len(drawn["ours"]) == 125
+
+
+def test_the_table_beside_the_laboratory_has_standard_errors():
+    cells = [line.split(" | ") for line in grains_tables.beside_the_laboratory(stored())[2:-1]]
+    assert [cell[4] for cell in cells] == ["+1.5 ± 2.5 %", "+5.4 ± 2.1 %", "+8.1 ± 2.2 %", "+0.2 ± 1.3 %"]
+    assert [cell[6] for cell in cells] == ["+1.4 ± 2.5 % |", "-8.8 ± 1.8 % |", "-4.0 ± 2.0 % |", "+0.8 ± 1.3 % |"]
+    # A study has no calibrated rock, and a packing alone no error.
+    assert len(grains_tables.beside_the_laboratory([{**row, "parameter": "friction"} for row in stored()])) == 3
+    assert len(grains_tables.beside_the_laboratory([row for row in stored() if row["seed"] == "166"])) == 3
+    assert grains_figures.envelope([row for row in stored() if row["seed"] == "166"])
+
+
+def test_stored_strengths_are_drawn_without_runs(tmp_path, capsys):
+    assert grains.main(tmp_path, ["--stored"]) == 2 and "must hold grains.csv" in capsys.readouterr().err
+    shutil.copy(RESULTS / "grains.csv", tmp_path)
+    assert grains.main(tmp_path, ["--stored"]) == 0 and "+8.1 ± 2.2 %" in capsys.readouterr().out
+    assert json.loads((tmp_path / "provenance.json").read_text(encoding="utf-8")).keys() == {"grains_envelope.png"}

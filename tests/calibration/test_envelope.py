@@ -19,15 +19,29 @@ def test_fits_of_points_on_a_line():
     found = envelope.fitted(points(0.0, 5e6, 10e6), [3e6])
     assert found["mohr_coulomb"]["cohesion"]["value"] == pytest.approx(30e6 / (2 * math.sqrt(SLOPE)))
     assert found["mohr_coulomb"]["friction_angle"]["value"] == pytest.approx(math.degrees(2 * math.atan(2)) - 90)
-    assert float(envelope.line_of(found)(7e6)) == pytest.approx(58e6)
-    assert found["hoek_brown"]["tensile_strength"] < float(envelope.curve_of(found)(0.0))
+    line, curve = envelope.fits_of(found)
+    assert float(line.sigma1(7e6)) == pytest.approx(58e6)
+    assert found["hoek_brown"]["tensile_strength"] < float(curve.sigma1(0.0))
 
 
 def test_points_without_a_curve_keep_their_line():
     flat = [{**point, "peak_stress": 30e6 + 0.9 * point["sigma3"]} for point in points(0.0, 5e6, 10e6)]
     found = envelope.fitted(flat)
-    assert "rising faster" in found["hoek_brown"]["refused"] and envelope.curve_of(found) is None
+    assert "rising faster" in found["hoek_brown"]["refused"] and len(envelope.fits_of(found)) == 1
     assert any("rising faster" in line for line in envelope.page({**found, "tensile_strengths": []}, None))
+
+
+def test_the_figure_has_both_fits_of_rock_and_laboratory():
+    ours = envelope.fitted([{**point, "seed": seed} for point in points(0.0, 5e6, 10e6) for seed in (1, 2)], [3e6, 3e6])
+    laboratory = envelope.fitted(points(0.0, 5e6, strength=20e6))
+    (axes,) = envelope.draw(ours, laboratory).axes
+    drawn = {line.get_label(): line.get_xydata() for line in axes.lines}
+    line = drawn[f"Mohr-Coulomb: c {20 / (2 * math.sqrt(SLOPE)):.3g} MPa, φ 36.9°"]
+    assert line[0] == pytest.approx((0, 20)) and line[-1, 1] == pytest.approx(20 + SLOPE * line[-1, 0])
+    assert drawn["laboratory"].tolist() == [[0, 20], [5, 40]]
+    assert len([label for label in drawn if label.startswith("Hoek-Brown")]) == 2
+    means = axes.containers[0].lines[0].get_xydata()
+    assert means.ravel() == pytest.approx([-3, 0, 0, 30, 5, 50, 10, 70])
 
 
 @pytest.mark.parametrize("words, said", [
