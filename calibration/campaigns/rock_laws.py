@@ -101,8 +101,8 @@ CASES = {
     "powers": ({f"strengths as radius^{POWER:g}, r = {radius:g} mm": at_size(ROCK, factor, POWER)
                 for radius, factor in FINENESS.items()}, (1, 2, 3, 4, 5), (0.0,)),
     "graded": ({f"0.6 mm, graded by {grading:g}": dict(
-        at_size(ROCK, FINENESS[0.6], POWER), grading_factor=grading, bond_tension_power=POWER, bond_cohesion_power=POWER)
-                for grading in GRADINGS}, (1, 2, 3, 4, 5), (0.0,)),
+        at_size(ROCK, FINENESS[0.6], POWER), grading_factor=grading, bond_tension_power=POWER,
+        bond_cohesion_power=POWER) for grading in GRADINGS}, (1, 2, 3, 4, 5), (0.0,)),
     "relations": ({f"kt/kn = {ratio:g}, gap {gap:g} mm": dict(ROCK, kt=ratio * 20e9, bonding_gap=1e-3 * gap)
                    for gap in (0.0, 0.1, 0.2) for ratio in (0.05, 0.2, 0.4, 0.7, 1.0)}, (1, 2, 3), (0.0,)),
 }
