@@ -226,8 +226,8 @@ def page(rows, found, points_of):
     lines = []
     if found:
         lines = ["### Table 2 of [Bahaaddini 2018]", "", *table_2(found),
-                 "### The calibrated rock over confinement", "", *confined(rows), "### Strengths beside the laboratory's line and curve", "",
-                 *beside_the_laboratory(rows)]
+                 "### The calibrated rock over confinement", "", *confined(rows),
+                 "### Strengths beside the laboratory's line and curve", "", *beside_the_laboratory(rows)]
     table = trends(points_of)
     if table:
         agree = [line[-1] for line in table if line[-1] != "–"]
