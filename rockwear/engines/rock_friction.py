@@ -19,6 +19,17 @@ def bond_classes():
     return [class_of(JCFpmPhys()), class_of(CpmPhys())]
 
 
+def possible_contacts(particles):
+    """(k,) indices in memory and (k, 2) bodies of the pairs among bodies 0..particles-1 that YADE holds possible."""
+    if not len(O.interactions):
+        return np.empty(0, np.int64), np.empty((0, 2), np.int64)
+    layout, places = contact_layout(), all_contacts()
+    bodies = WORDS.take(places + layout["bodies"])
+    pairs = np.column_stack([bodies & 0xffffffff, bodies >> 32])
+    rock = pairs.max(axis=1) < particles
+    return places[rock], pairs[rock]
+
+
 class RockContacts(Engine):
     """Contacts between rock particles that are no bonds, and the friction energy dissipated there, `total` (J).
 
@@ -56,17 +67,15 @@ class RockContacts(Engine):
     def _possible(self):
         """Places in memory and bodies [(first, second)] of all pairs of rock particles that are no bonds, ordered by
         the bodies: a loaded scene has them in another order."""
-        if not len(O.interactions):
+        places, pairs = possible_contacts(self.particles)
+        if not len(places):
             return [], []
-        layout, places = contact_layout(), all_contacts()
-        phys, bodies = WORDS.take(places + layout["phys"]), WORDS.take(places + layout["bodies"])
-        first, second = bodies & 0xffffffff, bodies >> 32
-        loose = np.maximum(first, second) < self.particles
-        made = np.flatnonzero(phys)
+        phys = WORDS.take(places + contact_layout()["phys"])
+        loose, made = np.ones(len(places), bool), np.flatnonzero(phys)
         kinds = WORDS.take(pointed(phys[made]))
         for bond in bond_classes():
             loose[made[kinds == bond]] = False
-        first, second, places = first[loose], second[loose], places[loose]
+        (first, second), places = pairs[loose].T, places[loose]
         order = np.lexsort((second, first))
         return places[order].tolist(), list(zip(first[order].tolist(), second[order].tolist()))
 

@@ -155,8 +155,8 @@ DAMPING = Parameter("background_damping", 500.0, "1/s", number(0), "global visco
 OTHER_DAMPING = (
     Parameter("non_viscous_damping", 0.0, "", number(0, 0.9), "of the rock, a fraction of each force against the "
               "velocity (Cundall's)", "[Rojek 2003, eqs 3.33-3.34]; [Rojek 2014, 3.1.3]"),
-    Parameter("bond_damping", 0.0, "", number(0, 1), "dashpots of bonds, normal and tangential, as a fraction of the "
-              "critical ones; in the plane", "[Rojek 2014, eqs 18-22]"),
+    Parameter("bond_damping", 0.0, "", number(0, 1), "dashpots of bonds and rock contacts, normal and tangential, as a "
+              "fraction of the critical ones; in the plane", "[Rojek 2014, eqs 18-22]"),
     Parameter("grain_quality", 30.0, "", number(0), "quality factor of vibrations within grains, in the plane, if "
               "damping_period is short against their decay; 0: they do not decay",
               "ours; sandstones have some 20 to 100, recalled"))

@@ -1,4 +1,6 @@
 """Dashpots of bonds [Rojek 2014, eqs 18-22] and damping of grains against the damped oscillator; energy, momentum."""
+import math
+
 import pytest
 
 from tests.running import checks_of
@@ -20,6 +22,12 @@ def test_what_the_dashpots_dissipate_closes_the_balance(checks):
 
 def test_forces_and_torques_are_internal(checks):
     assert checks["momentum"] < 1e-9
+
+
+def test_discs_never_bonded_part_with_the_restitution_of_the_damped_oscillator(checks):
+    found, ratio = checks["restitution"], 0.1
+    assert found["bonds"] == 1 and abs(found["missed"]) < 2e-3
+    assert found["ratio"] == pytest.approx(math.exp(-math.pi * ratio / math.sqrt(1 - ratio**2)), rel=5e-3)
 
 
 def test_a_pair_in_a_grain_decays_by_its_quality_factor(checks):
