@@ -9,11 +9,11 @@ its standard error, the command with its commit, and the wall time. What is no m
 
     runs      {name: {command, commit, date, wall}}
     results   [{row, run, and value (SI) [error, packings], or agrees (true, false, null: unclear), or nothing for a
-              figure; found: in words; set: what differs from the defaults; explained: {run, why}}]
-    open      {row: why it was not run}
+              figure; found: in words; set: what differs from the defaults; explained: {run, why}, of a guess {why}}]
+    open      {row: "not run: " or "not entered: " and why}
 
 A row whose numbers differ by more than a factor of 1.5, or whose statement is not found, is explained by a run, or the
-page says that it is not.
+page says that it is not, or that it is a guess. A figure without numbers in the source's text may be open, too.
 """
 import argparse
 import json
@@ -38,6 +38,7 @@ CLOSE = 0.05
 """Relative difference up to which numbers agree, whatever their errors."""
 RUN = "command", "commit", "date", "wall"
 WORDS = {True: "agrees", False: "differs", None: "unclear"}
+NO_NUMBERS, OPEN = "no numbers in the source", ("not run", "not entered")
 COLUMNS = "place", "what", "published", "how it is read", "ours ± standard error (packings)", "ratio", "verdict", "run"
 
 
@@ -75,8 +76,10 @@ def check(rows, ours):
     for name, run in ours["runs"].items():
         for key in RUN:
             require(run.get(key), f"run {name}: {key}", run.get(key), "given")
-    for name in ours["open"]:
+    for name, why in ours["open"].items():
         require(name in known, "open", name, "a published row")
+        kind, _, why = why.partition(": ")
+        require(kind in OPEN and why, f"{name}: open", kind, f"{' or '.join(OPEN)}, a colon and why")
     for result in ours["results"]:
         name = result["row"]
         require(name in known, "result", name, "of a published row")
@@ -92,32 +95,35 @@ def check(rows, ours):
         else:
             require(result.get("found"), f"{name}: found", result.get("found"), "said in words")
         explained = result.get("explained")
-        for run in (result["run"], *([explained["run"]] if explained else ())):
+        for run in (result["run"], *([explained["run"]] if explained and "run" in explained else ())):
             require(run in ours["runs"], f"{name}: run", run, "one of the runs, with its command")
+        require(not explained or explained.get("why"), f"{name}: why", explained, "said where a run is named")
         require(not explained or verdict(row, result)[0] == "differs", f"{name}: explained", explained,
                 "left out where nothing differs")
 
 
 def cells(row, result, why_open):
-    """([cells] of one line of the page, its verdict). result: None of a row that has none."""
+    """([cells] of one line of the page, what it counts as). result: None of a row that has none."""
     said = row.get("stated", "–")
     if "value" in row:
         said = " to ".join(quantity(value, row["unit"]) for value in np.atleast_1d(row["value"]).tolist())
     first = [row["place"], row["what"], said, row["reading"]]
     if result is None:
-        word = "not run" if "value" in row or "stated" in row else "no numbers"
-        return [*first, "–", "–", word + (f": {why_open}" if why_open else ""), "–"], word
+        words = why_open or (OPEN[0] if "value" in row or "stated" in row else NO_NUMBERS)
+        return [*first, "–", "–", words, "–"], words.partition(": ")[0]
     word, times = verdict(row, result)
     found = [result["set"]] if "set" in result else []
     if "value" in row:
         packings = f" ({result['packings']})" if "packings" in result else ""
         found.append(with_error(result["value"], result.get("error", math.nan), row["unit"]) + packings)
     found += [result["found"]] if "found" in result else []
-    words = {"shown": "no numbers"}.get(word, word)
+    kind, why = {"shown": NO_NUMBERS}.get(word, word), ""
     if word == "differs":
-        explained = result.get("explained")
-        words += f": {explained['why']} (*{explained['run']}*)" if explained else ", not explained"
-    return [*first, "; ".join(found), "–" if math.isnan(times) else number(times), words, f"*{result['run']}*"], words
+        explained = result.get("explained", {})
+        kind += ", explained by a run" if "run" in explained else ", a guess" if explained else ", not explained"
+        why = f": {explained['why']}" if explained else ""
+    words = f"differs{why} (*{explained['run']}*)" if kind.endswith("by a run") else kind + why
+    return [*first, "; ".join(found), "–" if math.isnan(times) else number(times), words, f"*{result['run']}*"], kind
 
 
 def lines(rows, ours):
@@ -129,14 +135,16 @@ def lines(rows, ours):
         for result in results[row["id"]] or [None]:
             line, word = cells(row, result, ours["open"].get(row["id"]))
             tables.setdefault(row["source"], []).append(line)
-            counted["differs, explained by a run" if word.startswith("differs: ") else word] += 1
+            counted[word] += 1
     text = ["# The sources' numbers beside ours", "",
             f"Of {sum(counted.values())} lines: "
             + ", ".join(f"{count} {word}" for word, count in counted.most_common()) + ".", "",
             f"agrees: within two standard errors or {100 * CLOSE:g} %; near: within a factor of {FACTOR}; differs: "
-            "further off, or a statement that is not found, with the run that explains it. Statements are judged by "
-            "hand. ± is the standard error of the mean over packings. Numbers that a source gives as input are "
-            "defaults of the scenes and are not listed.", ""]
+            "further off, or a statement that is not found, with the run that explains it; a guess: no run has tested "
+            "the explanation. Statements are judged by hand. ± is the standard error of the mean over packings. "
+            f"{NO_NUMBERS[0].upper() + NO_NUMBERS[1:]}: a figure of which the text gives none; what we found stands "
+            "beside it. Numbers that a source gives as input are defaults of the scenes and are not listed, but for "
+            "counts of particles, which follow from sizes that are ours.", ""]
     for source, table in tables.items():
         text += [f"## [{source}]", "", *generated.table(COLUMNS, table)]
     return text + ["## Runs", "", "Commit: of the code that ran, or of the numbers' entry where it was not noted.", "",

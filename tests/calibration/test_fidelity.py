@@ -17,7 +17,7 @@ ROWS = [{**ROW, "id": "ucs", "what": "UCS", "value": 60e6, "unit": "Pa"},
 RUN = {"command": "python3 -m calibration.fidelity", "commit": "0000000", "date": "2026-01-01", "wall": "1 s"}
 OURS = {"runs": {"lab": RUN}, "results": [{"row": "ucs", "run": "lab", "value": 58e6, "error": 1.5e6, "packings": 5},
                                           {"row": "chip", "run": "lab", "agrees": True, "found": "a chip of 20 mm"}],
-        "open": {"k": "no laboratory"}}
+        "open": {"k": "not run: no laboratory"}}
 
 
 def changed(**result):
@@ -54,9 +54,25 @@ def test_every_published_row_is_a_line_of_the_page():
     assert [line[1] for line in table] == ["UCS", "k", "cut", "temperatures"]
     assert table[0][2:] == ["60 MPa", "as printed", "58.0 ± 1.5 MPa (5)", "0.967", "agrees", "*lab* |"]
     assert table[1][2] == "0.002 to 0.003" and table[1][6] == "not run: no laboratory"
-    assert table[2][4:7] == ["a chip of 20 mm", "–", "agrees"] and table[3][6] == "no numbers"
-    assert "Of 4 lines: 2 agrees, 1 not run, 1 no numbers." in page
+    assert table[2][4:7] == ["a chip of 20 mm", "–", "agrees"] and table[3][6] == "no numbers in the source"
+    assert "Of 4 lines: 2 agrees, 1 not run, 1 no numbers in the source." in page
     assert "| *lab* | `python3 -m calibration.fidelity` | 0000000 | 2026-01-01 | 1 s |" in page
+
+
+@pytest.mark.parametrize("row", ["map", "ucs"])
+@pytest.mark.parametrize("kind", ["not run", "not entered"])
+def test_what_was_not_run_is_told_from_what_the_source_gives_no_number_of(row, kind):
+    """A figure without numbers may be open, too: a run could show it."""
+    own = {**OURS, "results": [one for one in OURS["results"] if one["row"] != row],
+           "open": {**OURS["open"], row: f"{kind}: it takes days"}}
+    line, word = fidelity.cells(next(one for one in ROWS if one["id"] == row), None, own["open"][row])
+    assert word == kind and line[-4:] == ["–", "–", f"{kind}: it takes days", "–"]
+    assert f" {2 if kind == 'not run' else 1} {kind}" in "\n".join(fidelity.lines(ROWS, own))
+
+
+def test_a_figure_with_a_result_of_ours_still_has_no_numbers_in_the_source():
+    result = {"row": "map", "run": "lab", "found": "20 K"}
+    assert fidelity.cells(ROWS[3], result, None)[0][-4:] == ["20 K", "–", "no numbers in the source", "*lab*"]
 
 
 def test_a_difference_names_the_run_that_explains_it_or_says_that_there_is_none():
@@ -64,6 +80,8 @@ def test_a_difference_names_the_run_that_explains_it_or_says_that_there_is_none(
     assert "| 2 | differs, not explained | *lab* |" in page and "1 differs, not explained" in page
     page = "\n".join(fidelity.lines(ROWS, changed(value=120e6, explained={"run": "lab", "why": "half the radius"})))
     assert "| 2 | differs: half the radius (*lab*) | *lab* |" in page and "1 differs, explained by a run" in page
+    page = "\n".join(fidelity.lines(ROWS, changed(value=120e6, explained={"why": "half the radius"})))
+    assert "| 2 | differs, a guess: half the radius | *lab* |" in page and "1 differs, a guess" in page
 
 
 def without(name, key):
@@ -81,7 +99,9 @@ def without(name, key):
     (ROWS, changed(agrees=True), "ucs: agrees"), (ROWS, changed(error=-1.0), "ucs: error"),
     (ROWS, changed(value=math.nan), "finite"), (ROWS, changed(explained={"run": "lab", "why": "?"}), "nothing differs"),
     (ROWS, changed(value=1e6, explained={"run": "field", "why": "?"}), "ucs: run = field"),
-    (ROWS, {**OURS, "open": {"ucs": "why"}}, "open = ucs")])
+    (ROWS, changed(value=1e6, explained={"run": "lab"}), "ucs: why"),
+    (ROWS, {**OURS, "open": {"ucs": "not run: why"}}, "open = ucs"),
+    (ROWS, {**OURS, "open": {"k": "no laboratory"}}, "k: open"), (ROWS, {**OURS, "open": {"k": "not run"}}, "k: open")])
 def test_what_does_not_match_is_refused(rows, own, words):
     with pytest.raises(ParameterError, match=words):
         fidelity.check(rows, own)
@@ -103,7 +123,7 @@ def test_a_result_of_finished_runs_is_entered_with_its_standard_error(tmp_path, 
                                "packings": 2, "error": pytest.approx(0.05e-3)}]
     assert own["runs"]["m-13.3-depth"]["wall"] == "3 min"
     # With other settings it stands beside it, and what was open is open no more.
-    file.write_text(json.dumps({**own, "open": {"m-13.3-depth": "not run", "m-2.1-ductility": "not run"}}))
+    file.write_text(json.dumps({**own, "open": dict.fromkeys(("m-13.3-depth", "m-2.1-ductility"), "not run: x")}))
     assert fidelity.main([*words, "--command", "cut", "--set", "Rn 500"]) == 0
     both = json.loads(file.read_text())
     assert [(one["run"], one.get("set")) for one in both["results"]] == [
@@ -118,3 +138,9 @@ def test_the_stored_page_is_that_of_the_stored_results():
     rows = [line for line in fidelity.lines(published.ROWS, json.loads(fidelity.OURS.read_text(encoding="utf-8")))
             if line.startswith("|")]
     assert rows == [line for line in stored if line.startswith("|")]
+
+
+def test_each_published_number_or_statement_has_a_result_or_a_reason():
+    own = json.loads(fidelity.OURS.read_text(encoding="utf-8"))
+    named = {result["row"] for result in own["results"]} | own["open"].keys()
+    assert [row["id"] for row in published.ROWS if ("value" in row or "stated" in row) and row["id"] not in named] == []
