@@ -1,0 +1,264 @@
+"""Moments in bonds: what rolling stiffness and rolling resistance do to a rock, by YADE's own law (CohFrict).
+
+    PYTHONPATH=. yade -n -x -j1 calibration/benchmarks/bond_moments.py --out DIR
+
+Compression, direct tension and confined compression of the specimens of calibration/campaigns/rock_laws.py, with
+brittle bonds of Coulomb's law that carry moments too. The moment of a bond is its rolling stiffness kr = ratio kt r_i
+r_j (N m) times the relative rotation of its discs. YADE erases a bond that opens: its discs then meet by their radii,
+which do not overlap, as with softening bonds. A run that DIR holds is not repeated. Writes DIR/bond_moments.json, a row
+a run, and bond_moments.md.
+"""
+import json
+import math
+import os
+import sys
+import time
+from pathlib import Path
+from statistics import median
+from types import SimpleNamespace
+
+import numpy as np
+from scipy.sparse import csr_matrix, diags, vstack
+from scipy.sparse.linalg import eigsh
+from yade import (
+    Bo1_Sphere_Aabb, CohFrictMat, ForceResetter, Ig2_Sphere_Sphere_ScGeom6D, InsertionSortCollider, InteractionLoop,
+    Ip2_CohFrictMat_CohFrictMat_CohFrictPhys, Law2_ScGeom6D_CohFrictPhys_CohesionMoment, NewtonIntegrator, O, PyRunner,
+    utils)
+
+from calibration import generated
+from calibration.campaigns.rock_laws import BOX, CONFINED_AT, PULL, ROCK, SPEED
+from calibration.laboratory.loaded_specimen import SpecimenOutput, SpecimenTest
+from calibration.laboratory.triaxial import GROUPS, NOTICED, TriaxialTest
+from rockwear.engines import access, base
+from rockwear.engines.confinement import Membrane
+from rockwear.engines.failure import Failure
+from rockwear.engines.platens import Platens
+from rockwear.engines.recorder import Recorder
+from rockwear.kernels.stability import contact_rows
+from rockwear.kernels.stress_strain import measured
+from rockwear.run import parameters, servers
+from rockwear.run.main import COMMON
+from rockwear.scenes import yade_scene
+
+LIMITLESS = -1.0
+"""Of a rolling moment: elastic."""
+
+
+def case(ratio, *, everywhere=False, eta=LIMITLESS, bends=False):
+    """ratio: of the rolling stiffness; everywhere: contacts have moments too, and broken bonds keep theirs; eta: of
+    largest moments, over normal force and lesser radius; bends: bonds break in bending."""
+    return SimpleNamespace(ratio=ratio, everywhere=everywhere, eta=eta, bends=bends)
+
+
+CASES = {
+    "0": case(0.0), "0.1": case(0.1), "0.5": case(0.5), "2": case(2.0),
+    "2, contacts too": case(2.0, everywhere=True), "2, all roll at η = 0.1": case(2.0, everywhere=True, eta=0.1),
+    "0.3, bonds break in bending": case(0.3, bends=True), "2, bonds break in bending": case(2.0, bends=True)}
+"""kr of a face of the width A that a bond stands for is kn A^2/12, here 0.3 kt r^2."""
+OURS = "law of rockwear"
+TESTS = {"compression": (-1, SPEED, 0.0), "tension": (1, PULL, 0.0), "confined": (-1, 0.1, CONFINED_AT)}
+"""{test: (sign, speed of a platen, confinement)}."""
+SEEDS = 3
+CONFINED = OURS, "0", "0.3, bonds break in bending", "2"
+TURNS, TIMED = 5, 400
+"""Runs of each law for their cost, and steps of each."""
+
+
+def critical_step(rock, kn, kt, kr):
+    """s, for discs whose bonds carry moments: a row sqrt(kr) (phi_j - phi_i) for each in the stiffness of
+    kernels.stability. kn, kt (N/m), kr (N m): (m,)."""
+    (i, j), n, m = rock.pairs.T, rock.count, len(rock.pairs)
+    line = rock.positions[j] - rock.positions[i]
+    length = np.linalg.norm(line, axis=1)
+    arms = (0.5 * (length + side * (rock.radii[i] - rock.radii[j])) for side in (1, -1))
+    springs = contact_rows(n, i, j, line / length[:, None], *arms, kn, kt)
+    turns = csr_matrix((np.repeat(np.sqrt(kr), 2) * np.tile([-1.0, 1.0], m),
+                        (3 * rock.pairs + 2).ravel(), np.arange(0, 2 * m + 1, 2)), shape=(m, 3 * n))
+    rows = vstack([springs, turns]) @ diags(np.column_stack([rock.masses, rock.masses, rock.inertias]).ravel()**-0.5)
+    return 2 / math.sqrt(eigsh(rows.T @ rows, k=1, which="LA", tol=1e-6, return_eigenvectors=False,
+                               v0=np.random.default_rng(0).standard_normal(3 * n))[0])
+
+
+class Bending(base.Engine):
+    """Breaks the bonds whose outermost fibre tears: Fn + 6 |M| / A > Rn of a face of the width A (m), 1 m thick."""
+
+    name, phase = "bending", base.FORCES
+
+    def __init__(self, bonds, widths, *, period=10):
+        super().__init__(period=period)
+        self.bonds = [(bond, bond.phys, bond.phys.normalAdhesion, width) for bond, width in zip(bonds, widths)]
+
+    def act(self):
+        self.bonds = [bond for bond in self.bonds if bond[0].isReal and not bond[1].cohesionBroken]
+        for interaction, phys, Rn, width in self.bonds:
+            if 6 * abs(phys.moment_bending[2]) / width - phys.normalForce.dot(interaction.geom.normal) > Rn:
+                phys.normalAdhesion, phys.shearAdhesion, phys.cohesionBroken = 0.0, 0.0, True
+
+
+class MomentTest(SpecimenTest):
+    """Compression or tension with moments in bonds, and a membrane at its sides. moments: of `case`."""
+
+    output_class = SpecimenOutput
+
+    def __init__(self, values, moments):
+        self.moments = moments
+        super().__init__(values)
+
+    def _durations(self):
+        return {"loading": self.loading_time}
+
+    def _further_engines(self):
+        bending = Bending(self.bonded, self.rock.bond_areas) if self.moments.bends else None
+        membrane = Membrane(rock=self.rock, ends=(int(self.left[0]), int(self.right[0])), pressure=self.pressure,
+                            interval=self.v.membrane_interval) if self.v.confinement else None
+        return bending, membrane
+
+    def pressure(self):
+        """Pa, which rises while the platens strain an elastic rock of E = kn by four times as much."""
+        part = min(1.0, self.time / (4 * self.v.confinement / self.law.kn * self.loading_time / self.v.strain_max))
+        return self.v.confinement * math.sin(0.5 * math.pi * part)**2
+
+    def strength_measure(self):
+        deviatoric = self.stress - self.v.confinement
+        return deviatoric if deviatoric > NOTICED * self.v.confinement else 0.0
+
+    def _choose_time_step(self):
+        rock = self.rock
+        self.kr = self.moments.ratio * self.law.kt * rock.radii[rock.pairs].prod(axis=1)
+        self.critical_step = critical_step(rock, *rock.stiffness(), self.kr)
+        self.time_step = self.v.time_step_fraction * self.critical_step
+
+    def build(self):
+        O.reset()
+        rock, law, m = self.rock, self.law, self.moments
+        for position, radius, mass, inertia in zip(rock.positions.tolist(), rock.radii.tolist(), rock.masses.tolist(),
+                                                   rock.inertias.tolist()):
+            # By YADE's rule kn = 2 E_i r_i E_j r_j / (E_i r_i + E_j r_j) every contact has the same.
+            material = CohFrictMat(
+                young=law.kn / radius, poisson=law.kt / law.kn, frictionAngle=math.atan(law.mu), density=1.0,
+                normalCohesion=1e30, shearCohesion=1e30, momentRotationLaw=m.ratio > 0, alphaKr=m.ratio, alphaKtw=0.0,
+                etaRoll=m.eta, etaTwist=LIMITLESS)
+            O.bodies.append(yade_scene.finite_disc(position, radius, material=material, mask=yade_scene.ROCK_MASK,
+                                                   mass=mass, inertia=inertia))
+        constants = Ip2_CohFrictMat_CohFrictMat_CohFrictPhys(setCohesionOnNewContacts=True)
+        O.engines = [
+            ForceResetter(), InsertionSortCollider([Bo1_Sphere_Aabb()]),
+            InteractionLoop([Ig2_Sphere_Sphere_ScGeom6D(avoidGranularRatcheting=True)], [constants],
+                            [Law2_ScGeom6D_CohFrictPhys_CohesionMoment(
+                                always_use_moment_law=m.everywhere, useIncrementalForm=m.eta != LIMITLESS)]),
+            NewtonIntegrator(damping=self.v.damping)]
+        self._bond(constants)
+        self._make_engines()
+        self._hold_ends()
+        self._set_off()
+        self._insert_engines()
+
+    def _bond(self, constants):
+        """Bond the pairs, without force as they lie, in a step of no length."""
+        for i, j in self.rock.pairs.tolist():
+            utils.createInteraction(i, j)
+        O.dt = 0.0
+        O.step()
+        constants.setCohesionOnNewContacts = False
+        self.bonded = [access.contact_of(i, j) for i, j in self.rock.pairs.tolist()]
+        for interaction, law in zip(self.bonded, self.rock.laws):
+            phys = interaction.phys
+            phys.normalAdhesion, phys.shearAdhesion, phys.unp = law.Rn, law.Rt, interaction.geom.penetrationDepth
+
+    def _make_engines(self):
+        v = self.v
+        row = max(1, round(v.record_strain * self.rock.width / (2 * v.speed * self.time_step)))
+        self.bonds = SimpleNamespace(energy_breaking=math.nan)
+        self.platens = Platens(left=self.left.tolist(), right=self.right.tolist(), velocity=self.sign * v.speed)
+        self.recorder = Recorder([self.output.log], period=row)
+        self.failure = Failure(stress=self.strength_measure, broken=lambda: True, drop=v.drop,
+                               beside=v.confinement, period=row)
+        self._register(*self._further_engines(), self.platens, self.recorder, self.failure)
+
+
+def made(name, test, seed, **changes):
+    """The test of a case, built. changes: {parameter: value}."""
+    sign, speed, confinement = TESTS[test]
+    given = {**ROCK, **BOX, "seed": seed, "speed": speed, "confinement": confinement, **changes}
+    if name == OURS:
+        given["bond_law"] = "coulomb"
+        del given["bond_fracture_energy"]
+    values = parameters.read(GROUPS, [f"--{parameter}={value}" for parameter, value in given.items()])
+    scene = TriaxialTest(values) if name == OURS else MomentTest(values, CASES[name])
+    scene.sign = sign
+    scene.build()
+    return scene
+
+
+def run(name, test, seed):
+    """A test to its end. -> {quantity: value}."""
+    scene = made(name, test, seed)
+    try:
+        while not scene.finished:
+            base.run(scene.stages[scene.stage][1])
+            scene.end_stage(None)
+    except base.RunEnded as ended:
+        print(name, test, seed, ended, flush=True)
+    columns = scene.recorder.columns()
+    found = measured(**{quantity: columns[quantity] for quantity in ("stress", "axial_strain", "lateral_strain")})
+    return {"case": name, "test": test, "seed": seed, **{quantity: value for quantity, (value, _) in found.items()},
+            "failed": scene.output.failed, "time_step": scene.time_step}
+
+
+def cost(names):
+    """{case: us of processor time a step of YADE by itself}, the cases in turns, the median."""
+    found = {name: [] for name in names}
+    for name in [*found] * TURNS:
+        made(name, "compression", 1)
+        O.engines = [engine for engine in O.engines if not isinstance(engine, PyRunner)]
+        began = time.process_time()
+        O.run(TIMED, True)
+        found[name].append(1e6 * (time.process_time() - began) / TIMED)
+    return {name: median(values) for name, values in found.items()}
+
+
+def page(rows, costs):
+    """Lines of Markdown: a row a case."""
+    found = {}
+    for row in rows:
+        for quantity in ("peak_stress", "youngs_modulus", "poissons_ratio", "time_step"):
+            found.setdefault((row["case"], row["test"], quantity), []).append(row[quantity])
+
+    def cells(name):
+        ucs, tension, confined = (1e-6 * np.array(found.get((name, test, "peak_stress"), [])) for test in TESTS)
+        E, nu, step = (np.array(found[name, "compression", quantity])
+                       for quantity in ("youngs_modulus", "poissons_ratio", "time_step"))
+        return [name, *(f"{values.mean():.3g} ± {values.std(ddof=1):.2g}" if len(values) else "–" for values in (
+            ucs, tension, ucs / tension, 1e-9 * E, nu, confined)), f"{1e6 * step.mean():.3f}"]
+
+    return [f"Mean ± standard deviation of {SEEDS} packings; UCS and σt in MPa, E in GPa, strength at "
+            f"{1e-6 * CONFINED_AT:g} MPa in MPa, time step in µs.", "",
+            *generated.table(["kr over kt r²", "UCS", "σt", "UCS/σt", "E", "ν", "confined", "time step"],
+                             [cells(name) for name in (OURS, *CASES)]),
+            "Processor time of YADE a step, µs: " + ", ".join(f"{name} {us:.0f}" for name, us in costs.items()) + "."]
+
+
+def main():
+    """Run what is not there yet, and write."""
+    servers.close()
+    folder = Path(parameters.read([COMMON], sys.argv[1:])["out"] or "out/bond_moments")
+    folder.mkdir(parents=True, exist_ok=True)
+    file = folder / "bond_moments.json"
+    stored = json.loads(file.read_text(encoding="utf-8")) if file.exists() else {"rows": [], "cost": {}}
+    done = {(row["case"], row["test"], row["seed"]) for row in stored["rows"]}
+    jobs = [(name, test, seed) for test in TESTS for seed in range(1, SEEDS + 1) for name in (OURS, *CASES)
+            if test != "confined" or name in CONFINED]
+    for job in jobs:
+        if job not in done:
+            stored["rows"].append(run(*job))
+            file.write_text(json.dumps(stored, indent=1), encoding="utf-8")
+    if not stored["cost"]:
+        stored["cost"] = cost([OURS, "0", "2"])
+        file.write_text(json.dumps(stored, indent=1), encoding="utf-8")
+    print(generated.write_page(folder / "bond_moments.md", page(stored["rows"], stored["cost"])))
+    sys.stdout.flush()
+    os._exit(0)
+
+
+if __name__ == "__main__":
+    main()
