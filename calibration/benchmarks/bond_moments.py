@@ -51,7 +51,7 @@ def case(ratio, *, everywhere=False, eta=LIMITLESS, bends=False):
 
 
 CASES = {
-    "0": case(0.0), "0.1": case(0.1), "0.5": case(0.5), "2": case(2.0),
+    "0": case(0.0), "0.1": case(0.1), "0.5": case(0.5), "2": case(2.0), "8": case(8.0),
     "2, contacts too": case(2.0, everywhere=True), "2, all roll at η = 0.1": case(2.0, everywhere=True, eta=0.1),
     "0.3, bonds break in bending": case(0.3, bends=True), "2, bonds break in bending": case(2.0, bends=True)}
 """kr of a face of the width A that a bond stands for is kn A^2/12, here 0.3 kt r^2."""
@@ -219,21 +219,24 @@ def cost(names):
 
 def page(rows, costs):
     """Lines of Markdown: a row a case."""
-    found = {}
-    for row in rows:
-        for quantity in ("peak_stress", "youngs_modulus", "poissons_ratio", "time_step"):
-            found.setdefault((row["case"], row["test"], quantity), []).append(row[quantity])
+    def of(name, test, quantity):
+        return np.array([row[quantity] for row in rows if (row["case"], row["test"]) == (name, test)])
+
+    def cell(values, beyond=False):
+        return f"{'> ' * beyond}{values.mean():.3g} ± {values.std(ddof=1):.2g}" if len(values) else "–"
 
     def cells(name):
-        ucs, tension, confined = (1e-6 * np.array(found.get((name, test, "peak_stress"), [])) for test in TESTS)
-        E, nu, step = (np.array(found[name, "compression", quantity])
-                       for quantity in ("youngs_modulus", "poissons_ratio", "time_step"))
-        return [name, *(f"{values.mean():.3g} ± {values.std(ddof=1):.2g}" if len(values) else "–" for values in (
-            ucs, tension, ucs / tension, 1e-9 * E, nu, confined)), f"{1e6 * step.mean():.3f}"]
+        ucs, tension, confined = (1e-6 * of(name, test, "peak_stress") for test in TESTS)
+        slope = (confined - ucs[:len(confined)]) / (1e-6 * CONFINED_AT)
+        beyond = not of(name, "confined", "failed").all()
+        return [name, cell(ucs), cell(tension), cell(ucs / tension),
+                cell(1e-9 * of(name, "compression", "youngs_modulus")), cell(of(name, "compression", "poissons_ratio")),
+                cell(confined, beyond), cell(np.degrees(np.arcsin((slope - 1) / (slope + 1))), beyond),
+                f"{1e6 * of(name, 'compression', 'time_step').mean():.3f}"]
 
-    return [f"Mean ± standard deviation of {SEEDS} packings; UCS and σt in MPa, E in GPa, strength at "
-            f"{1e-6 * CONFINED_AT:g} MPa in MPa, time step in µs.", "",
-            *generated.table(["kr over kt r²", "UCS", "σt", "UCS/σt", "E", "ν", "confined", "time step"],
+    return [f"Mean ± standard deviation of {SEEDS} packings; strengths in MPa, E in GPa, time step in µs; φ, °, "
+            f"from UCS and the strength at {1e-6 * CONFINED_AT:g} MPa. >: one has not failed at a strain of 2 %.", "",
+            *generated.table(["kr over kt r²", "UCS", "σt", "UCS/σt", "E", "ν", "confined", "φ", "time step"],
                              [cells(name) for name in (OURS, *CASES)]),
             "Processor time of YADE a step, µs: " + ", ".join(f"{name} {us:.0f}" for name, us in costs.items()) + "."]
 
