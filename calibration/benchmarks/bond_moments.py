@@ -224,7 +224,8 @@ def cost(names):
 def page(rows, costs):
     """Lines of Markdown: a row a case."""
     def of(name, test, quantity):
-        return np.array([row[quantity] for row in rows if (row["case"], row["test"]) == (name, test)])
+        return np.array([row[quantity] for row in sorted(rows, key=lambda row: row["seed"])
+                         if (row["case"], row["test"]) == (name, test)])
 
     def cell(values, beyond=False):
         return f"{'> ' * beyond}{values.mean():.3g} ± {values.std(ddof=1):.2g}" if len(values) else "–"
