@@ -139,8 +139,8 @@ def in_step():
 def restitution():
     """Of two discs that were never bonded and collide, far from a pair that is; and what the balance misses over the
     energy at first."""
-    far = [(8e-3, 8e-3), (8e-3, 6e-3)]
-    rock, bonds, dashpots = built([(1e-3, 1e-3), (3.0001e-3, 1e-3), *far], [(0.1, 0, 0), (-0.1, 0, 0), *2 * [(0, 0, 0)]])
+    places = [(1e-3, 1e-3), (3.0001e-3, 1e-3), (8e-3, 8e-3), (8e-3, 6e-3)]
+    rock, _, dashpots = built(places, [(0.1, 0, 0), (-0.1, 0, 0), (0, 0, 0), (0, 0, 0)])
     O.dt = 2 * math.pi / math.sqrt(2 * LAW.kn / rock.masses[0]) / 2000
     first = utils.kineticEnergy()
     while O.bodies[0].state.vel[0] > 0 or O.interactions.has(0, 1) and O.interactions[0, 1].isReal:
