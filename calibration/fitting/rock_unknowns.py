@@ -134,10 +134,11 @@ class Micro:
         return {"kn": kn, "kt_over_kn": ratio, "tension": tension, "shear": shear, "mu": friction, "length": length}
 
     def _strengths(self, t, ratio, energy):
-        """First guess of (tension in Pa, shear) at this kt/kn and kn G_f (Pa² m): grains by constants, bare discs by the
-        stored relations."""
+        """First guess of (tension in Pa, shear) at this kt/kn and kn G_f (Pa² m): with grains by constants, of bare
+        discs by the stored relations."""
         if self.given.get("grain_edge"):
-            return TENSION * t.tensile_strength, min(max(SHEAR * (t.ucs / t.tensile_strength / RATIO)**2, 0.7), 8.0)
+            shear = SHEAR * (t.ucs / t.tensile_strength / RATIO)**2
+            return TENSION * t.tensile_strength, min(max(shear, 0.7), 8.0)
         data = stored()
         tension, shear = strength_guess(
             data, ucs=t.ucs, tensile_strength=t.tensile_strength, least=LEAST, kt_over_kn=ratio,
