@@ -16,6 +16,7 @@ import matplotlib
 import numpy as np
 
 from calibration import generated
+from calibration.campaigns import rock_relations
 from calibration.campaigns.runs import Runs, command_line, existing, wait_for
 from rockwear.report import palette, plots
 
@@ -103,14 +104,14 @@ CASES = {
     "graded": ({f"0.6 mm, graded by {grading:g}": dict(
         at_size(ROCK, FINENESS[0.6], POWER), grading_factor=grading, bond_tension_power=POWER,
         bond_cohesion_power=POWER) for grading in GRADINGS}, (1, 2, 3, 4, 5), (0.0,)),
-    "relations": ({f"kt/kn = {ratio:g}, gap {gap:g} mm": dict(ROCK, kt=ratio * 20e9, bonding_gap=1e-3 * gap)
-                   for gap in (0.0, 0.1, 0.2) for ratio in (0.05, 0.2, 0.4, 0.7, 1.0)}, (1, 2, 3), (0.0,)),
+    "relations": (rock_relations.cases(ROCK), rock_relations.SEEDS, (0.0,)),
 }
 """{campaign: (cases, seeds, confinements)}."""
-QUANTITIES = {"E": (1e-9, "GPa"), "nu": (1, ""), "UCS": (1e-6, "MPa"), "tension": (1e-6, "MPa"), "ratio": (1, ""),
-              "phi": (1, "°"), "m_i": (1, ""), "K": (1e-6, "MPa√m"), "G": (1, "J/m²")}
-HEADS = {"E": "E, GPa", "nu": "ν", "UCS": "UCS, MPa", "tension": "σt, MPa", "ratio": "UCS/σt", "phi": "φ, °",
-         "m_i": "m_i", "K": "K_IC, MPa√m", "G": "G_f, J/m²"}
+QUANTITIES = {"coordination": (1, ""), "E": (1e-9, "GPa"), "nu": (1, ""), "UCS": (1e-6, "MPa"),
+              "tension": (1e-6, "MPa"), "ratio": (1, ""), "phi": (1, "°"), "m_i": (1, ""), "K": (1e-6, "MPa√m"),
+              "G": (1, "J/m²")}
+HEADS = {"coordination": "coordination", "E": "E, GPa", "nu": "ν", "UCS": "UCS, MPa", "tension": "σt, MPa",
+         "ratio": "UCS/σt", "phi": "φ, °", "m_i": "m_i", "K": "K_IC, MPa√m", "G": "G_f, J/m²"}
 
 
 def tests(campaign, values, seed):
@@ -167,8 +168,9 @@ def _of_packing(folder, campaign, case, rock, seed):
     unconfined, tension = runs.get("confined 0"), runs.get("tension")
     if unconfined is None or tension is None:
         return None
-    row = {"E": unconfined.result("youngs_modulus"), "nu": unconfined.result("poissons_ratio"),
-           "UCS": unconfined.result("peak_stress"), "tension": tension.result("tensile_strength")}
+    row = {"coordination": unconfined.result("rock_coordination"), "E": unconfined.result("youngs_modulus"),
+           "nu": unconfined.result("poissons_ratio"), "UCS": unconfined.result("peak_stress"),
+           "tension": tension.result("tensile_strength")}
     row["ratio"] = row["UCS"] / row["tension"]
     if "toughness" in runs:
         row.update(K=runs["toughness"].result("fracture_toughness"), G=runs["toughness"].result("fracture_energy"))
@@ -199,34 +201,6 @@ def table(found):
     columns = [name for name in QUANTITIES if any(cell(name, values[name]) != "–" for values in found.values())]
     return generated.table(["", *(HEADS[name] for name in columns)],
                            [[case, *(cell(name, values[name]) for name in columns)] for case, values in found.items()])
-
-
-def relations(found):
-    """[{kt_over_kn, gap (m), E/kn, nu, UCS and tension over the tensile stress of bonds: mean, deviation}]."""
-    cases = CASES["relations"][0]
-    return [{"kt_over_kn": cases[case]["kt"] / cases[case]["kn"], "bonding_gap": cases[case]["bonding_gap"],
-             **{f"{name}{over}": [float(np.mean(values[name]) / unit), float(np.std(values[name]) / unit)]
-                for name, over, unit in (("E", "_over_kn", cases[case]["kn"]), ("nu", "", 1.0),
-                                         ("UCS", "_over_bond_tension", cases[case]["bond_tension"]),
-                                         ("tension", "_over_bond_tension", cases[case]["bond_tension"]))}}
-            for case, values in found.items()]
-
-
-def draw_relations(rows):
-    """Dimensionless relations [Rojek 2014, 5.2]: E and nu over kt/kn, strengths over the bond's; error bars are the
-    scatter of packings."""
-    names = {"E_over_kn": "E/kn", "nu": "ν", "UCS_over_bond_tension": "UCS/σb", "tension_over_bond_tension": "σt/σb"}
-    figure, panels = plots.canvas(10, 7, 2, 2)
-    gaps = sorted({row["bonding_gap"] for row in rows})
-    for axes, (name, label) in zip(np.ravel(panels), names.items()):
-        for gap, colour in zip(gaps, palette.OTHER_LINES):
-            chosen = [row for row in rows if row["bonding_gap"] == gap]
-            mean, deviation = np.array([row[name] for row in chosen]).T
-            axes.errorbar([row["kt_over_kn"] for row in chosen], mean, deviation, fmt="o-", color=colour, capsize=3,
-                          label=f"bonding gap {1e3 * gap:g} mm")
-        axes.set(xlabel="kt/kn", ylabel=label)
-    np.ravel(panels)[0].legend()
-    return figure
 
 
 def draw_resolution(found):
@@ -274,11 +248,13 @@ def write(folder):
                       *table(cases)]
             rows += [[campaign, case, name, *values] for case, quantities in cases.items()
                      for name, values in quantities.items()]
-        if found["relations"]:
-            data = relations(found["relations"])
+        whole = {case: values for case, values in found["relations"].items() if len(values["UCS"]) > 1}
+        if len(whole) == len(CASES["relations"][0]):
+            lines += rock_relations.tables(ROCK, whole)
+            data = rock_relations.numbers(ROCK, whole)
             files += [folder / "relations.json", folder / "relations.png"]
             files[-2].write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
-            draw_relations(data).savefig(files[-1])
+            rock_relations.draw(data).savefig(files[-1])
         if found["resolution"]:
             files.append(folder / "resolution.png")
             draw_resolution(found["resolution"]).savefig(files[-1])

@@ -46,8 +46,8 @@ KEPT = ("rotation", "bond_shear_energy", "bond_crushing", "crushing_hardening", 
 points are fitted."""
 GRAINS = (5.0, 0.0), (11.0, 1.8), (math.inf, 2.2)
 """(largest UCS over tensile strength, grain_edge over the mean radius that can give it). Without grains and with the
-cohesive law the ratio is 6 to 7 for any shear strength; at an edge of 1.8 radii it is 6.2, 8.1 and 13.0 for shear over
-tensile strengths of 1.5, 3 and 7 (525 discs, three packings)."""
+cohesive law the ratio is 4.1 to 6.8 for shear over tensile strengths of 0.5 to 10 (relations.json); at an edge of 1.8
+radii it is 6.2, 8.1 and 13.0 for 1.5, 3 and 7 (525 discs, three packings)."""
 FRICTION_FITTED = 1.2
 """Ratio of such strengths to what a rock reaches whose confined strengths ask for little friction in its bonds: 10.9 to
 9.3 at a friction of 0.12, shear over tension of 4.4 and an edge of 1.8 radii (ten packings)."""

@@ -16,11 +16,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from calibration.fitting.relations import elastic_guess
+from calibration.fitting.relations import BOND_AREA, elastic_guess, stored, strength_guess
 
 SHEAR, RATIO, TENSION, FRICTION = 3.0, 8.1, 1.6, 0.7
-"""First guesses: shear over tensile strength of a bond at this UCS over tensile strength, with whose square it goes; a
-bond's tensile strength over the rock's; friction."""
+"""First guesses in grains: shear over tensile strength of a bond at this UCS over tensile strength, with whose square
+it goes, by hand from ratios of 6.2, 8.1, 13.0 that 1.5, 3, 7 gave at an edge of 1.8 radii (rock_targets.GRAINS);
+a bond's tensile strength over the rock's, 7 over 4.1 to 4.4 MPa (calibration/results/rock_laws.md). Bare discs have the
+stored relations. Friction of both."""
+LEAST = 1.01
+"""length over the radius, of bonds that are all but brittle."""
 STEEPNESS, BEND = 6.9, 1.4
 """First guess of friction from confined strengths: the rise of sigma1 over that of sigma3 up to the highest point, from
 the last one of at most half its confinement, at which it is FRICTION, and with which power of the rise it goes. In
@@ -118,16 +122,29 @@ class Micro:
 
     def _first_guess(self, t):
         kn, ratio = elastic_guess(youngs_modulus=t.youngs_modulus, poissons_ratio=t.poissons_ratio)
-        tension = TENSION * t.tensile_strength
-        shear = min(max(SHEAR * (t.ucs / t.tensile_strength / RATIO)**2, 0.7), 8.0)
         toughness = t.fracture_toughness or TOUGHNESS * t.tensile_strength
-        length = max(toughness**2 / t.youngs_modulus * kn / tension**2, 1.01 * self.radius)
+        energy = toughness**2 / t.youngs_modulus * kn
+        tension, shear = self._strengths(t, ratio, energy)
+        length = max(energy / tension**2, LEAST * self.radius)
         friction = FRICTION
         if t.points:
             high, stronger = t.points[-1]
             low, weaker = [point for point in ((0.0, t.ucs), *t.points) if point[0] <= 0.5 * high][-1]
             friction = min(max(FRICTION * ((stronger - weaker) / (high - low) / STEEPNESS)**BEND, 0.1), 1.2)
         return {"kn": kn, "kt_over_kn": ratio, "tension": tension, "shear": shear, "mu": friction, "length": length}
+
+    def _strengths(self, t, ratio, energy):
+        """First guess of (tension in Pa, shear) at this kt/kn and kn G_f (Pa² m): with grains by constants, of bare
+        discs by the stored relations."""
+        if self.given.get("grain_edge"):
+            shear = SHEAR * (t.ucs / t.tensile_strength / RATIO)**2
+            return TENSION * t.tensile_strength, min(max(shear, 0.7), 8.0)
+        data = stored()
+        tension, shear = strength_guess(
+            data, ucs=t.ucs, tensile_strength=t.tensile_strength, least=LEAST, kt_over_kn=ratio,
+            energy=energy / self.radius if self.law == "cohesive" else 0.0,
+            porosity=self.given.get("porosity", data["defaults"]["porosity"]))
+        return tension * (BOND_AREA if self.law == "brittle" else 1.0), shear
 
     def _of_rock(self, start):
         """{unknown: value} of the parameters of a rock: the inverse of `parameters`."""

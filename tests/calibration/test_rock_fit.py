@@ -7,7 +7,7 @@ import pytest
 
 from calibration.campaigns import library
 from calibration.campaigns.runs import RunFailed
-from calibration.fitting import rock_fit, rock_page, rock_targets
+from calibration.fitting import relations, rock_fit, rock_page, rock_targets
 from calibration.fitting.rock_unknowns import Micro
 from calibration.fitting.rock_targets import GROUPS, MOST_POINTS, Targets, given_of, start_of, targets_of
 from rockwear.kernels.bond_laws import BOND_LAWS
@@ -171,8 +171,10 @@ def test_first_guesses_are_parameters_of_the_scenes(law):
     assert set(found) == {"bond_law", "bonding_gap", "porosity", *of_law}
     for name, value in found.items():
         OF_ROCK[name].check(value)
-    # Of a tensile strength of 1.6 times the rock's; a force is a stress times the diameter.
-    assert found.get("Rn", 5e-3 * 11.2e6) == pytest.approx(5e-3 * 11.2e6)
+    # A force is a stress times the diameter.
+    tension = micro.named(micro.first)["tension"]
+    assert found["Rn" if law == "brittle" else "bond_tension"] == pytest.approx(
+        tension * (5e-3 if law == "brittle" else 1), rel=1e-4)
 
 
 def test_a_search_begins_with_the_bonds_of_a_rock_at_other_radii(tmp_path):
@@ -391,6 +393,26 @@ def test_tests_are_as_fast_and_as_long_as_the_strength_that_they_look_for():
         if script == "triaxial.py" and values["confinement"] == 6e6:
             found = [value * 114 / 82 for value in found]
         assert found == pytest.approx([speed, longest, 1 / 200], rel=1e-3), script
+
+
+def test_bare_discs_begin_with_the_stored_relations_and_grains_with_constants():
+    weak = Targets(12e9, 0.25, 22e6, 5e6)
+    for porosity in (0.12, 0.15):
+        micro = Micro(law="cohesive", targets=weak, radius=1.25e-3, given={"porosity": porosity, "grain_edge": 0.0})
+        u = micro.named(micro.first)
+        at = relations.strengths(relations.stored(), kt_over_kn=u["kt_over_kn"], cohesion_over_tension=u["shear"],
+                                 length_over_radius=u["length"] / 1.25e-3, porosity=porosity)
+        assert u["tension"] * np.array(at) == pytest.approx([22e6, 5e6], rel=1e-4)
+    # Of bonds that are all but brittle: the force over the diameter, not over the bond's area.
+    first = {law: micro.named(micro.first) for law in ("coulomb", "brittle")
+             for micro in [Micro(law=law, targets=weak, radius=1.25e-3, given={"porosity": 0.12})]}
+    at = relations.strengths(relations.stored(), kt_over_kn=u["kt_over_kn"], length_over_radius=1.01,
+                             cohesion_over_tension=first["coulomb"]["shear"])
+    assert first["coulomb"]["tension"] * at[1] == pytest.approx(5e6, rel=1e-4)
+    assert first["brittle"]["tension"] == pytest.approx(0.566 * first["coulomb"]["tension"])
+    grains = Micro(law="cohesive", targets=weak, radius=1.25e-3, given={"porosity": 0.12, "grain_edge": 2.2e-3})
+    u = grains.named(grains.first)
+    assert (u["tension"], u["shear"]) == pytest.approx((1.6 * 5e6, 3 * (4.4 / 8.1)**2))
 
 
 @pytest.mark.parametrize("highest, friction", [(34e6, 0.7 * (4 / 6.9)**1.4), (1e9, 1.2), (23e6, 0.1)])
