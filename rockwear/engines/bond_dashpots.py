@@ -24,18 +24,18 @@ class BondDashpots(Engine):
     """Normal and tangential dashpots in parallel with the springs [Rojek 2014, eqs 18-19], bodies 0..n-1.
 
     They act on the pairs of the rock as long as their bond is intact, and later while the two overlap; on other pairs
-    of its particles while they overlap. rock: the specimen, in the plane; bonds: engines.bond_log.BondLog; law: that of
-    its bonds, whose stiffness other contacts have; ratio: xi, of the critical damping. All velocities are read and all
-    forces added in each step, which costs more than the step itself. `dissipated` (J) is the work of the forces over
-    the mean of the velocities before and after each step.
+    of its particles while they overlap. rock: the specimen, in the plane; bonds: engines.bond_log.BondLog, whose law
+    has the stiffness of other contacts, too; ratio: xi, of the critical damping. All velocities are read and all forces
+    added in each step, which costs more than the step itself. `dissipated` (J) is the work of the forces over the mean
+    of the velocities before and after each step.
     """
 
     name = "bond_dashpots"
     phase = FORCES
 
-    def __init__(self, *, rock, bonds, law, ratio):
+    def __init__(self, *, rock, bonds, ratio):
         super().__init__()
-        self.rock, self.bonds, self.law, self.ratio = rock, bonds, law, ratio
+        self.rock, self.bonds, self.ratio = rock, bonds, ratio
         self.of_bonds = coefficients(rock, ratio)
         self.moving = np.flatnonzero(~rock.fixed).tolist()
         self.forces, self.before, self.dissipated = np.zeros((rock.count, 3)), np.zeros((rock.count, 3)), 0.0
@@ -56,7 +56,7 @@ class BondDashpots(Engine):
         keys = np.setdiff1d(low * rock.count + high, np.sort(rock.pairs, axis=1) @ (rock.count, 1))
         other = np.column_stack(np.divmod(keys, rock.count))
         self.first, self.second = np.concatenate([rock.pairs, other]).T
-        own = coefficients(rock, self.ratio, pairs=other, stiffness=np.array([self.law.stiffest()]).T)
+        own = coefficients(rock, self.ratio, pairs=other, stiffness=np.array([self.bonds.law.stiffest()]).T)
         self.normal, self.tangential = np.concatenate([self.of_bonds, own], axis=1)
 
     def act(self):

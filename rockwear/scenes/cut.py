@@ -120,7 +120,7 @@ class Cut(Scene):
                                               rate=2.0 / (self.grain_quality * self.bonded_step))
         self.dashpots = None
         if self.bond_damping:
-            self.dashpots = BondDashpots(rock=rock, bonds=self.bonds, law=self.bond_law, ratio=self.bond_damping)
+            self.dashpots = BondDashpots(rock=rock, bonds=self.bonds, ratio=self.bond_damping)
         self.boundary = None
         if self.boundary_model:
             self.boundary = self.boundary_model.engine(rock, period=BOUNDARY_PERIOD, step=self.time_step,

@@ -405,7 +405,7 @@ class Softening(Tension):
 
     def _engines(self):
         bonds, *others = super()._engines()
-        return [bonds, BondDashpots(rock=self.rock, bonds=bonds, law=bonds.law, ratio=0.05),
+        return [bonds, BondDashpots(rock=self.rock, bonds=bonds, ratio=0.05),
                 GrainDamping(rock=self.rock, bonds=bonds, rate=1e4, period=5), *others]
 
 

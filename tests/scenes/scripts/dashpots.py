@@ -37,7 +37,7 @@ def built(places, velocities, ratio=RATIO, **grains):
         rock.grains = np.zeros(rock.count, int)
         damping = GrainDamping(rock=rock, bonds=bonds, **grains)
     else:
-        damping = BondDashpots(rock=rock, bonds=bonds, law=LAW, ratio=ratio)
+        damping = BondDashpots(rock=rock, bonds=bonds, ratio=ratio)
     for body, (x, y, spin) in zip(O.bodies, velocities):
         body.state.vel, body.state.angVel = (x, y, 0), (0, 0, spin)
     base.register([bonds, damping])
