@@ -49,7 +49,6 @@ LAWS = {
     "no rotation": dict(ROCK, rotation="blocked"),
     "shear energy 300 J/m²": dict(ROCK, bond_shear_energy=300.0),
     "crushing at 75 MPa": dict(ROCK, bond_crushing=75e6),
-    "dashpots, ratio 0.2": dict(ROCK, bond_damping=0.2),
     "Coulomb, brittle": {name: value for name, value in dict(ROCK, bond_law="coulomb").items()
                          if name != "bond_fracture_energy"},
     "grains, edge 2 mm": dict(ROCK, grain_edge=2e-3),
