@@ -5,11 +5,15 @@ import matplotlib
 import numpy as np
 
 from calibration import generated
+from calibration.fitting import rock_envelope
 from rockwear.kernels.checks import ParameterError
 from rockwear.kernels.strength_envelope import mohr_coulomb
-from rockwear.model.rock_file import FORMAT, PROPERTIES
+from rockwear.model.rock_file import FORMAT, PROPERTIES, read
 from rockwear.report import plots
+from rockwear.scenes.parameters import OF_ROCK
 
+ENVELOPE = "envelope.png"
+"""Figure of strengths over confinement."""
 SCALES = {"Pa": (1e6, "MPa"), "Pa sqrt(m)": (1e6, "MPa sqrt(m)"), "": (1, "")}
 NEAR = 0.05
 """Difference of UCS over tensile strength from what was asked for, over it, that is not for want of other grains."""
@@ -105,12 +109,16 @@ def envelope(found, micro):
 
 
 def write(folder, found, *, micro, targets, values):
-    """Write rock.json, fit.md and fit.png into `folder`."""
+    """Write rock.json, fit.md and fit.png, and envelope.png of a rock with confined strengths, into `folder`."""
     rock = rock_file(found, micro=micro, targets=targets, values=values)
-    (folder / "rock.json").write_text(json.dumps(rock, indent=1) + "\n", encoding="utf-8")
+    written = [folder / "rock.json", folder / "fit.png"]
+    written[0].write_text(json.dumps(rock, indent=1) + "\n", encoding="utf-8")
     with matplotlib.rc_context(plots.STYLE):
-        figure(found, micro).savefig(folder / "fit.png")
-    generated.record(folder / "rock.json", folder / "fit.png")
+        figure(found, micro).savefig(written[1])
+        if "triaxial" in rock["plane"]["measured"]:
+            written.append(folder / ENVELOPE)
+            rock_envelope.draw(*rock_envelope.compared(read(written[0], OF_ROCK))).savefig(written[2])
+    generated.record(*written)
     generated.write_page(folder / "fit.md", page(found, micro=micro, targets=targets, values=values))
 
 
@@ -155,6 +163,8 @@ def page(found, *, micro, targets, values):
         wanted = getattr(targets, name, None)
         lines += [f"{name}: {values_of.mean():.4g} ± {values_of.std(ddof=1):.2g} {unit}"
                   + (f", target {wanted:g}" if wanted else "") + f" ({len(values_of)} packings).", ""]
+    if any(o.test == "triaxial" for o in found.verdicts):
+        lines += [f"![σ1 over σ3]({ENVELOPE})", ""]
     lines += ["![steps](fit.png)", "", "## Micro-parameters", ""]
     lines += generated.table(["parameter", "value"], list(micro.parameters(found.x).items()))
     errors = ", ".join(f"{name} {100 * error:.1f} %" for name, error in zip(micro.names, found.error))
@@ -179,10 +189,8 @@ def radii(values):
 
 
 def figure(found, micro):
-    """Measured over target, step by step, and each packing of the last check; strengths over confinement."""
-    confined = [o for o in micro.observables if o.test == "triaxial"]
-    drawn, panels = plots.canvas(12 if confined else 7.5, 4.5, 1, 2 if confined else 1)
-    axes = panels[0]
+    """Measured over target, step by step, and each packing of the last check."""
+    drawn, (axes,) = plots.canvas(7.5, 4.5)
     for number, o in enumerate(micro.observables):
         colour = f"C{number}"
         axes.plot([np.nanmean(step.values[o]) / o.target for step in found.steps], "o-", color=colour, label=o.name,
@@ -194,19 +202,4 @@ def figure(found, micro):
     axes.axhspan(0.95, 1.05, color="0.9", zorder=0)
     axes.set(ylabel="measured / target")
     axes.legend(fontsize=8, ncol=4, loc="lower center", bbox_to_anchor=(0.5, 1.0))
-    if confined:
-        draw_envelope(panels[1], found, micro, confined)
     return drawn
-
-
-def draw_envelope(axes, found, micro, confined):
-    """sigma1 at failure over sigma3."""
-    ucs = next(o for o in micro.observables if o.name == "ucs")
-    values = found.steps[-1].values
-    axes.plot([0] + [1e-6 * o.confinement for o in confined], [1e-6 * o.target for o in (ucs, *confined)], "k*",
-              markersize=10, label="target")
-    for o in (ucs, *confined):
-        axes.plot(np.full(len(values[o]), 1e-6 * o.confinement), 1e-6 * values[o], "x", color="C0",
-                  label="packings" if o is ucs else None)
-    axes.set(xlabel="σ3, MPa", ylabel="σ1 at failure, MPa", xlim=(-1, None), ylim=(0, None))
-    axes.legend()

@@ -157,8 +157,10 @@ def test_what_it_leaves_is_a_rock_file_and_a_page_that_begins_with_the_answer(tm
     assert part.measured["cohesion"]["mean"] == pytest.approx(60e6 / 2 / np.tan(np.radians(45 + angle / 2)), rel=0.15)
     page = (tmp_path / "fit.md").read_text(encoding="utf-8")
     assert page.split("\n\n")[2].startswith("All 7 targets are met, on 10 packings that the fit has not seen.")
-    assert (tmp_path / "fit.png").stat().st_size > 1e4
-    assert json.loads((tmp_path / "provenance.json").read_text(encoding="utf-8")).keys() == {"fit.png", "rock.json"}
+    assert "(envelope.png)" in page
+    assert all((tmp_path / name).stat().st_size > 1e4 for name in ("fit.png", "envelope.png"))
+    assert json.loads((tmp_path / "provenance.json").read_text(encoding="utf-8")).keys() == {
+        "fit.png", "envelope.png", "rock.json"}
 
 
 @pytest.mark.parametrize("law", [law for law in rock_targets.LAWS if law in BOND_LAWS])
