@@ -141,7 +141,8 @@ def tests(campaign, values, seed):
              for confinement in confinements}
     found["tension"] = UNIAXIAL, dict(common, **box, speed=PULL, test="tension")
     if campaign in ("laws", "resolution", "kept", "powers", "graded") and not blocked:
-        found["toughness"] = TOUGHNESS, dict(common, size=size, **(SUDDEN if values.get("bond_law") == "coulomb" else {}))
+        brittle = values.get("bond_law") == "coulomb"
+        found["toughness"] = TOUGHNESS, dict(common, size=size, **(SUDDEN if brittle else {}))
     if campaign == "graded":
         for _, of in found.values():
             of["fine_depth"] = 0.25 * of.get("height", 1.25 * size)
