@@ -148,6 +148,8 @@ def main(words):
 
 
 def _stop(number, frame):
+    # Slurm signals every process of a job, and its script this one once more, while the run writes its checkpoint.
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)
     print(f"\nstopped by signal {number}; the same command resumes", flush=True)
     raise SystemExit(128 + number)
 
