@@ -254,7 +254,7 @@ def wait_for(file):
         time.sleep(0.02)
 
 
-def test_a_job_array_runs_a_row(swept, tmp_path):
+def test_a_job_array_runs_a_row_and_its_failure_is_gathered(swept, tmp_path, monkeypatch, capsys):
     out, _, _, _ = swept
     words = [str(out.parent / "rows.table"), SCRIPT, "--out", str(out)]
     file = out / "array.sh"
@@ -264,6 +264,23 @@ def test_a_job_array_runs_a_row(swept, tmp_path):
     assert process.wait(120) == 1 and log == out / "slurm-3.log"
     line = "failed: impossible ended with 2: error: radius_max = 0.0015 m"
     assert log.read_text(encoding="utf-8").startswith(line)
+    monkeypatch.setattr(runs.Runs, "_connect", None)
+    capsys.readouterr()
+    (out / "sweep.html").unlink()
+    assert sweep.main([*words, "--read"]) == 1
+    said = capsys.readouterr()
+    assert said.err.startswith(line) and said.out.startswith("2 of 3 rows are done, 1 failed: ")
+    assert line.removeprefix("failed: ") in (out / "sweep.html").read_text(encoding="utf-8")
+
+
+def test_rows_that_have_not_ended_are_gathered_as_such(swept, tmp_path, capsys):
+    out, _, _, _ = swept
+    shutil.copytree(out / "never", tmp_path / "never")
+    (tmp_path / "killed.log").write_text("failed: before\nanother run\n", encoding="utf-8")
+    assert sweep.main([str(out.parent / "rows.table"), SCRIPT, "--out", str(tmp_path), "--read"]) == 1
+    said = capsys.readouterr()
+    assert not said.err and said.out.startswith("1 of 3 rows are done, 0 failed: ")
+    assert (tmp_path / "sweep.html").read_text(encoding="utf-8").count("not done") == 2
 
 
 @pytest.mark.parametrize("number, requeued", [(signal.SIGUSR1, ["7_2 checkpoint"]), (signal.SIGTERM, []), (None, [])])
