@@ -72,9 +72,9 @@ def agreement(ours, theirs):
 
 
 def at_steps(rows):
-    """{step: (force in the direction of the cut and across it that the tool feels, N/m; bonds broken)} of those STEPS
-    that a record (n, 4) has."""
-    return {int(step): (-x + 0.0, y + 0.0, int(rows[0, 3] - intact)) for step, x, y, intact in rows.tolist() if step in STEPS}
+    """{step: (N/m on the tool against the cut and upwards, bonds broken)} of those STEPS that a record (n, 4) has."""
+    return {int(step): (-x + 0.0, y + 0.0, int(rows[0, 3] - intact))
+            for step, x, y, intact in rows.tolist() if step in STEPS}
 
 
 def page(result):
@@ -98,7 +98,7 @@ def page(result):
                  " and ".join(map(str, same["broken_then"]))],
                 ["bonds broken at the end", " and ".join(map(str, same["broken"]))],
                 ["mean cutting force, kN/m", " and ".join(f"{1e-3 * f:.0f}" for f in same["mean_force"])]]),
-            "Force on the tool against the cut and upwards, kN/m, and bonds broken by then, in rockwear and LAMMPS:", "",
+            "Force on the tool against the cut and upwards, kN/m, and bonds broken, in rockwear and LAMMPS:", "",
             *generated.table(["step", "against the cut", "upwards", "bonds broken"], [
                 [step, *(f"{1e-3 * a:.4g} and {1e-3 * b:.4g}" for a, b in zip(after[step][:2], peers[step][:2])),
                  f"{after[step][2]} and {peers[step][2]}"] for step in after if step in peers]),

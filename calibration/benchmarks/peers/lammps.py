@@ -117,7 +117,8 @@ def contact(kn, kt, mu):
 
 
 def script(model, job, **options):
-    """The text of the input script. job: CUT with sample, timed and rest (steps), or STRETCH with components of the strain."""
+    """The text of the input script. job: CUT with sample, timed and rest (steps), or STRETCH with components of the
+    strain."""
     return (SCRIPT + job).format(
         of_rock=contact(model["kn"][0], model["kt"][0], model["mu"]), free=FREE, tool=TOOL, fixed=FIXED,
         of_tool=contact(model["tool_kn"], model["tool_kt"], model["tool_mu"]), skin=SKIN * model["radii"].min(),
