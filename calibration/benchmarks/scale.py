@@ -1,9 +1,10 @@
 """What a step of YADE costs by the number of particles, their order in memory, the collider's stride, and threads.
 
-    python3 -m calibration.benchmarks.scale DIR        (part of make bench)
+    python3 -m calibration.benchmarks.scale DIR [--large]        (part of make bench, without --large)
 
 Runs calibration/benchmarks/scale_block.py, one process at a time except for the jobs side by side, all cases of a turn
-one after the other; blocks that DIR has are kept. Writes scale.md, scale.json and scale.png into DIR.
+one after the other; blocks that DIR has are kept. --large: a million discs and a hundred thousand spheres too, in one
+turn. Writes scale.md, scale.json and scale.png into DIR.
 """
 import json
 import math
@@ -19,14 +20,20 @@ from calibration.campaigns.runs import ROOT, RunFailed, command, run_script
 from rockwear.report import plots
 
 SCRIPT = "calibration/benchmarks/scale_block.py"
-SIZES = {2: (2000, 20_000, 92_000), 3: (2000, 20_000)}
-ORDERS = "scattered", "curve"
+ORDERS = "scattered", "packing", "curve"
+ALL, CURVE = ORDERS, ORDERS[2:]
+SIZES = {2: {1000: CURVE, 2000: ALL, 4000: CURVE, 8000: CURVE, 20_000: ALL, 92_000: ALL},
+         3: {2000: ALL, 20_000: ALL}}
+"""{dimensions: {particles: orders}}; spheres in a lattice are packed row by row."""
+LARGE = {2: {1_000_000: CURVE}, 3: {97_336: CURVE}}
+"""With --large: in one turn."""
+FIRST, LAST = 2000, 92_000
+"""Discs between which the growth is said in one number."""
 VERLET = 0.1, 0.25, 0.5, 1.0
 VERLET_SIZE = THREADS_SIZE = 20_000
-THREADS = ("one job, -j1:", 1, 1), ("one job, -j2:", 1, 2), ("two jobs, -j1, together:", 2, 1)
+THREADS = ("one job, -j1", 1, 1), ("one job, -j2", 1, 2), ("two jobs, -j1, together", 2, 1)
 """Words, jobs, threads of each."""
-TURNS, LARGE = 3, 10_000
-"""Turns, one from LARGE particles on."""
+TURNS = 3
 WORK = 8e6
 """Bonds times steps that are timed."""
 
@@ -51,93 +58,147 @@ def read(folder):
 
 
 def together(folder, jobs, threads):
-    """Steps per second of all of `jobs` blocks at once, each with so many threads."""
+    """Steps per second of all of `jobs` blocks at once, each with so many threads; what the folders have is kept."""
     folders = [folder / f"{jobs}x{threads}-{n}" for n in range(jobs)]
-    started = [subprocess.Popen(command(SCRIPT, one, words(THREADS_SIZE), threads), stdin=subprocess.DEVNULL,
-                                stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-                                env={**os.environ, "PYTHONPATH": str(ROOT)}) for one in folders]
-    if any([one.wait() for one in started]):
-        raise RunFailed(f"{jobs} jobs of {threads} threads failed")
+    if not all((one / "scale_block.json").exists() for one in folders):
+        started = [subprocess.Popen(command(SCRIPT, one, words(THREADS_SIZE), threads), stdin=subprocess.DEVNULL,
+                                    stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                                    env={**os.environ, "PYTHONPATH": str(ROOT)}) for one in folders]
+        if any([one.wait() for one in started]):
+            raise RunFailed(f"{jobs} jobs of {threads} threads failed")
     return sum(1 / read(one)["wall"] for one in folders)
 
 
-def cases():
-    """{name: options} of all blocks."""
-    sizes = {f"{d}D-{n}-{order}": dict(particles=n, dimensions=d, order=order)
-             for d in SIZES for n in SIZES[d] for order in ORDERS}
-    return {**sizes, **{f"verlet-{v}": dict(particles=VERLET_SIZE, verlet=v) for v in VERLET}}
+def name_of(dimensions, particles, order):
+    """The name of a case."""
+    return f"{dimensions}D-{particles}-{order}"
 
 
-def measure(folder):
-    """{case: what it wrote, `ns` (median) per bond and step}."""
-    found = {name: [] for name in cases()}
+def blocks(sizes):
+    """{name: options} of the blocks of such sizes."""
+    return {name_of(d, n, order): dict(particles=n, dimensions=d, order=order)
+            for d, of in sizes.items() for n, orders in of.items() for order in orders}
+
+
+def verlet():
+    """{name: options} of the blocks with other Verlet distances."""
+    return {f"verlet-{v}": dict(particles=VERLET_SIZE, verlet=v) for v in VERLET}
+
+
+def measure(folder, large):
+    """({case: [what it wrote in each turn]}, {words: [steps per second in each turn]})."""
+    found, rates = {}, {name: [] for name, *_ in THREADS}
     for turn in range(TURNS):
-        for name, options in cases().items():
-            if not turn or options["particles"] < LARGE:
-                found[name].append(block(folder / f"scale/{turn}-{name}", **options))
-    return {name: {**runs[0], "ns": 1e9 * median(run["cpu"] / run["bonds"] for run in runs)}
-            for name, runs in found.items()}
+        place = folder / "scale" / str(turn)
+        for name, options in {**blocks(SIZES), **verlet()}.items():
+            found.setdefault(name, []).append(block(place / name, **options))
+        for name, jobs, threads in THREADS:
+            rates[name].append(together(place, jobs, threads))
+    for name, options in blocks(LARGE if large else {}).items():
+        found[name] = [block(folder / "scale/large" / name, **options)]
+    return found, rates
 
 
-def exponents(rows):
-    """Exponents of the time per step over the particles, between neighbouring sizes."""
-    return [math.log(b["ns"] * b["bonds"] / (a["ns"] * a["bonds"])) / math.log(b["particles"] / a["particles"])
-            for a, b in zip(rows, rows[1:])]
+def nanoseconds(runs):
+    """(k,) ns of processor time per bond and step."""
+    return [1e9 * run["cpu"] / run["bonds"] for run in runs]
 
 
-def table(found, threads):
+def half_range(values):
+    """Half of what lies between the least and the largest."""
+    return 0.5 * (max(values) - min(values))
+
+
+def cell(values, digits=0):
+    """A table's cell: the median, with half of the range where there are several."""
+    return f"{median(values):.{digits}f}" + (f" ± {half_range(values):.{digits}f}" if len(values) > 1 else "")
+
+
+def of_order(found, dimensions, order):
+    """[(particles, runs)] of the blocks of one order, by size."""
+    cases = {**SIZES[dimensions], **LARGE[dimensions]}
+    return [(n, found[name_of(dimensions, n, order)]) for n in sorted(cases)
+            if name_of(dimensions, n, order) in found]
+
+
+def growth(first, last):
+    """(how many times as long a bond takes per step in the second of two blocks [runs], exponent of the time per step
+    over the particles)."""
+    (a, b), (n, m) = (median(nanoseconds(runs)) for runs in (first, last)), (runs[0] for runs in (first, last))
+    return b / a, math.log(b * m["bonds"] / (a * n["bonds"])) / math.log(m["particles"] / n["particles"])
+
+
+def over_all(found, order):
+    """Words: growth in the plane from FIRST to LAST."""
+    factor, exponent = growth(*(found[name_of(2, n, order)] for n in (FIRST, LAST)))
+    return f"{factor:.2f} times as long per bond and step, exponent {exponent:.2f}"
+
+
+def table(found, rates):
     """Lines of Markdown."""
     rows = []
-    for d, sizes in SIZES.items():
-        by_order = {order: [found[f"{d}D-{n}-{order}"] for n in sizes] for order in ORDERS}
-        growth = {order: ["–", *(f"{e:.2f}" for e in exponents(of))] for order, of in by_order.items()}
-        for k, (scattered, curve) in enumerate(zip(*by_order.values())):
-            rows.append([f"{d}", curve["particles"], curve["bonds"], f"{scattered['ns']:.0f}", f"{curve['ns']:.0f}",
-                         f"{curve['ns'] / scattered['ns']:.2f}", growth["scattered"][k], growth["curve"][k],
-                         f"{1e-3 * curve['bytes']:.1f}", f"{abs(curve['energy'] / scattered['energy'] - 1):.0e}"])
+    for d in SIZES:
+        before = None
+        for n, curve_runs in of_order(found, d, "curve"):
+            times = {order: found.get(name_of(d, n, order)) for order in ORDERS}
+            gain = (f"{median(nanoseconds(curve_runs)) / median(nanoseconds(times['packing'])):.2f}"
+                    if times["packing"] else "–")
+            off = abs(curve_runs[0]["energy"] / times["scattered"][0]["energy"] - 1) if times["scattered"] else None
+            rows.append([d, curve_runs[0]["particles"], curve_runs[0]["bonds"],
+                         *(cell(nanoseconds(runs)) if runs else "–" for runs in times.values()), gain,
+                         f"{growth(before, curve_runs)[1]:.2f}" if before else "–",
+                         cell([1e-3 * run["bytes"] for run in curve_runs], 1), "–" if off is None else f"{off:.0e}"])
+            before = curve_runs
     return ["## Scale", "",
-            "Processor time of YADE by itself per bond and step; particles scattered in memory and along Morton's "
-            "curve. Growth: exponent of the time per step over the particles, from the size before.", "",
-            *generated.table(["dimensions", "particles", "bonds", "ns, scattered", "ns, curve", "ratio",
-                              "growth, scattered", "growth, curve", "kB per particle", "difference of kinetic energy"],
-                             rows),
+            f"Processor time of YADE by itself per bond and step: medians of {TURNS} turns ± half of the range; blocks "
+            "without ± ran once. Particles scattered in memory, in the packing's own order, and along Morton's curve. "
+            "Growth: exponent of the time per step over the particles, along the curve, from the size before.", "",
+            *generated.table(["dimensions", "particles", "bonds", *(f"ns, {order}" for order in ORDERS),
+                              "curve over packing", "growth", "kB per particle", "difference of kinetic energy"], rows),
+            f"From {FIRST} to {LAST} discs: " + "; ".join(f"{order} {over_all(found, order)}" for order in ORDERS)
+            + ".", "",
             f"Verlet distance of the collider, {VERLET_SIZE} discs moving at up to 10 m/s:", "",
             *generated.table(["over the least radius", "ns per bond and step"],
-                             [[v, f"{found[f'verlet-{v}']['ns']:.0f}"] for v in VERLET]),
-            f"Steps per second of {VERLET_SIZE} discs by the clock: " + ", ".join(
-                f"{words} {rate:.1f}" for words, rate in threads.items()) + ".", ""]
+                             [[v, cell(nanoseconds(found[f"verlet-{v}"]))] for v in VERLET]),
+            f"Steps per second of {THREADS_SIZE} discs by the clock, all jobs together:", "",
+            *generated.table(["jobs and threads", "steps per second", "over the first"],
+                             [[name, cell(of, 1), f"{median(of) / median(rates[THREADS[0][0]]):.2f}"]
+                              for name, of in rates.items()])]
 
 
 def drawn(found):
     """The figure: time per bond and step, and memory, over the particles."""
-    figure, (left, right) = plots.canvas(10, 4.2, 1, 2)
+    figure, (left, right) = plots.canvas(11, 4.4, 1, 2)
     for d, mark in ((2, "o"), (3, "s")):
-        for order, style in (("scattered", "--"), ("curve", "-")):
-            rows = [found[f"{d}D-{n}-{order}"] for n in SIZES[d]]
-            left.semilogx([row["particles"] for row in rows], [row["ns"] for row in rows], mark + style,
-                          color=f"C{d - 2}", label=f"{'plane' if d == 2 else 'space'}, {order}")
-        right.semilogx([row["particles"] for row in rows], [1e-3 * row["bytes"] for row in rows], mark + "-",
-                       color=f"C{d - 2}", label="plane" if d == 2 else "space")
+        place = "plane" if d == 2 else "space"
+        for order, style in zip(ORDERS, (":", "--", "-")):
+            particles, runs = zip(*of_order(found, d, order))
+            times = list(map(nanoseconds, runs))
+            left.errorbar(particles, list(map(median, times)), list(map(half_range, times)), fmt=mark + style, ms=4,
+                          capsize=2, color=f"C{d - 2}", label=f"{place}, {order}")
+        right.plot(particles, [median(run["bytes"] for run in turns) for turns in runs], mark + "-",
+                   color=f"C{d - 2}", label=place)
+    left.set_title(f"{FIRST} to {LAST} discs, along the curve:\n{over_all(found, 'curve')}", fontsize=9)
     left.set_ylabel("ns per bond and step")
-    right.set_ylabel("kB per particle")
+    right.set_ylabel("bytes per particle")
     for axes in (left, right):
+        axes.set_xscale("log")
         axes.set_xlabel("particles")
         axes.set_ylim(bottom=0)
         axes.legend(fontsize=8)
     return figure
 
 
-def curve(folder):
+def curve(folder, large=False):
     """Run all, write scale.json and scale.png into `folder`. -> the lines of the tables."""
     folder.mkdir(parents=True, exist_ok=True)
-    found = measure(folder)
-    threads = {name: together(folder / "scale", jobs, n) for name, jobs, n in THREADS}
-    (folder / "scale.json").write_text(json.dumps({"blocks": found, "threads": threads}, indent=1), encoding="utf-8")
+    found, rates = measure(folder, large)
+    (folder / "scale.json").write_text(json.dumps({"blocks": found, "threads": rates}, indent=1), encoding="utf-8")
     with matplotlib.rc_context(plots.STYLE):
         drawn(found).savefig(folder / "scale.png")
     generated.record(folder / "scale.png", folder / "scale.json")
-    return table(found, threads)
+    return table(found, rates)
 
 
 if __name__ == "__main__":
-    one_curve.main(curve)
+    one_curve.main(curve, "--large")

@@ -20,6 +20,7 @@ from rockwear.engines import access
 from rockwear.kernels.bond_laws import ElasticBrittle
 from rockwear.kernels.curve_order import curve_order
 from rockwear.kernels.parameter import Group, Parameter, choice, integer, number
+from rockwear.model import rock as packings
 from rockwear.model.rock import Arranged, RockAssembly, Specimen
 from rockwear.run import parameters, servers
 from rockwear.run.main import COMMON
@@ -34,13 +35,15 @@ WARM_UP = 5
 GROUPS = [Group("block", (
     Parameter("particles", 2000, "", integer(100), "about so many"),
     Parameter("dimensions", 2, "", integer(2), "2 or 3"),
-    Parameter("order", "curve", "", choice("curve", "scattered"), "of the particles in memory"),
+    Parameter("order", "curve", "", choice("curve", "packing", "scattered"), "of the particles in "
+              "memory; packing: as they are packed, in space row by row"),
     Parameter("verlet", 0.0, "", number(0), "YADE's Verlet distance over the least radius; 0: its default"),
     Parameter("steps", 1000, "", integer(1), "steps timed")))]
 
 
 def block(v):
     """The rock."""
+    packings.ORDERED = math.inf  # a large specimen would come in the order of the curve
     if v["dimensions"] == 2:
         mean_square = (1 + 1.5 + 1.5**2) / 3 * RADIUS**2
         side = math.sqrt(v["particles"] * math.pi * mean_square / 0.88)
@@ -51,8 +54,10 @@ def block(v):
         places = RADIUS * (2 * np.indices((across,) * 3).reshape(3, -1).T + [1, 1, 1 - across])
         rock = Arranged(positions=places, radius=RADIUS, density=DENSITY, **dict.fromkeys(
             ("width", "height", "depth"), 2 * across * RADIUS))
-    order = np.random.default_rng(1).permutation(rock.count)
-    if v["order"] == "curve":
+    order = np.arange(rock.count)
+    if v["order"] == "scattered":
+        order = np.random.default_rng(1).permutation(order)
+    elif v["order"] == "curve":
         order = curve_order(rock.positions)
     number_of = np.argsort(order)
     pairs = np.sort(number_of[rock.pairs], axis=1)

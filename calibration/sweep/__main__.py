@@ -1,17 +1,21 @@
 """Run every row of a yade-batch table, here or on a cluster, and gather the results on one page.
 
     python3 -m calibration.sweep TABLE SCRIPT [--out DIR] [--jobs N | --scheduler ADDRESS]
-    python3 -m calibration.sweep TABLE SCRIPT [--out DIR] --slurm FILE
+    python3 -m calibration.sweep TABLE SCRIPT [--out DIR] --slurm FILE | --read
 
 A row is a run of SCRIPT in DIR/ROW, named by the table's description, with the values of the row as its parameters; its
 words go to DIR/ROW.log. All rows are checked before the first one runs. The same command again keeps the rows that have
 finished with this version of rockwear and resumes the others from their checkpoints. Writes sweep.html and sweep.csv
 into DIR. Exit code 0: all rows are done; 1: some failed, each said in one line; 2: bad input, said in one line; 128 +
-n: stopped by signal n.
+n: stopped by signal n. --read runs nothing and gathers what there is: 1 where rows are missing.
 
 On a cluster, start `dask scheduler` on one machine and `dask worker ADDRESS --nthreads N` on each, N rows at a time;
 all see the same folders. A worker lost in mid-row costs one checkpoint interval, and the row goes on elsewhere; the
 scheduler gives a row up with its fourth worker (DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES, 3).
+
+By Slurm, --slurm FILE writes a job array, `sbatch FILE` runs it, `sbatch --array=4 FILE` the fourth row alone, and the
+same command with --read gathers the rows afterwards. Tried with Slurm 22.05 on one machine: five tensile tests, one of
+which fails, and rows that scancel, the time limit and preemption stop; each went on from its checkpoint.
 """
 import argparse
 import json
@@ -29,6 +33,9 @@ from calibration.generated import ROOT
 from calibration.sweep import page, slurm
 from rockwear.kernels.checks import ParameterError, require
 from rockwear.report.folder import RunFolder
+
+FAILED = "failed: "
+"""How a line begins that says why a row failed."""
 
 
 @dataclass
@@ -100,18 +107,32 @@ def run_all(rows, folder, **where):
         for one in runs.as_they_end(row_of):
             row_of[one].failure = str(one.exception() or "")
             if row_of[one].failure:
-                print(f"failed: {row_of[one].failure}", file=sys.stderr, flush=True)
+                print(f"{FAILED}{row_of[one].failure}", file=sys.stderr, flush=True)
 
 
 def run_one(row):
-    """Run one row here, without a scheduler. -> exit code as of a sweep."""
+    """Run one row here, without a scheduler; where it fails, the last line of its log says so. -> exit code as of a
+    sweep."""
     if row.done:
         return 0
     (row.folder / "summary.json").unlink(missing_ok=True)
     code, said = yade_job.run(row.job)
     if code:
-        print(f"failed: {row.name} ended with {code}: {said}", file=sys.stderr)
+        line = f"{FAILED}{row.name} ended with {code}: {said}"
+        print(line, file=sys.stderr)
+        with open(row.job["log"], "a", encoding="utf-8") as log:
+            print(line, file=log)
     return 1 if code else 0
+
+
+def read_failures(rows):
+    """Set the `failure` of each row that run_one has seen fail."""
+    for row in rows:
+        log = Path(row.job["log"])
+        lines = log.read_text(encoding="utf-8", errors="replace").splitlines() if log.exists() else []
+        if lines and lines[-1].startswith(FAILED) and not row.done:
+            row.failure = lines[-1].removeprefix(FAILED)
+            print(lines[-1], file=sys.stderr)
 
 
 def main(words):
@@ -125,11 +146,13 @@ def main(words):
     runs.add_placement(parser)
     parser.add_argument("--results", nargs="+", default=(), metavar="NAME", help="results to show, of those in the "
                         "rows' summary.json")
-    parser.add_argument("--slurm", metavar="FILE", help="write a job array for sbatch, a row a job, and run nothing")
-    parser.add_argument("--row", type=int, metavar="N", help="run the Nth row alone, here; this is what a job of the "
-                        "array does")
+    other = parser.add_mutually_exclusive_group()
+    other.add_argument("--slurm", metavar="FILE", help="write a job array for sbatch, a row a job, and run nothing")
+    other.add_argument("--read", action="store_true", help="run nothing, gather the rows that there are")
+    other.add_argument("--row", type=int, metavar="N", help="run the Nth row alone, here; this is what a job of the "
+                       "array does")
     options = parser.parse_args(words)
-    alone = options.slurm or options.row is not None
+    alone = options.slurm or options.read or options.row is not None
     try:
         where = {} if alone else runs.placement(words)[0]
         rows, units, folder = read_rows(options.table, options.script, options.out, options.row)
@@ -137,17 +160,21 @@ def main(words):
             return slurm.write(Path(options.slurm), rows, options.table, options.script, folder)
         if options.row is not None:
             return run_one(rows[options.row - 1])
-        run_all(rows, folder, **where)
+        if options.read:
+            read_failures(rows)
+        else:
+            run_all(rows, folder, **where)
     except (ParameterError, SweepError, OSError) as error:
         print(f"error: {error}", file=sys.stderr)
         return 2
-    failed = [row for row in rows if row.failure]
-    print(f"{len(rows) - len(failed)} of {len(rows)} rows are done, {len(failed)} failed: "
-          f"{page.write(folder, rows, units, options.results)}")
-    return 1 if failed else 0
+    done, failed = sum(row.done for row in rows), sum(bool(row.failure) for row in rows)
+    print(f"{done} of {len(rows)} rows are done, {failed} failed: {page.write(folder, rows, units, options.results)}")
+    return 0 if done == len(rows) else 1
 
 
 def _stop(number, frame):
+    # Slurm signals every process of a job, and its script this one once more, while the run writes its checkpoint.
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)
     print(f"\nstopped by signal {number}; the same command resumes", flush=True)
     raise SystemExit(128 + number)
 

@@ -9,9 +9,10 @@ from calibration.generated import ROOT
 ARRAY = """\
 #!/bin/bash
 # sbatch {file}
-# A row a job. Two minutes before its time limit (and before preemption, where PreemptParameters=send_user_signal) it
-# gets SIGUSR1, writes a checkpoint and is queued again. At SIGTERM (scancel) it writes one and is not: `sbatch` of
-# this file once more runs the rows that are missing. The page, when all have ended: the command below without --row.
+# A row a job. Two to three minutes before its time limit it gets SIGUSR1, writes a checkpoint and is queued again; a
+# limit below five minutes leaves it no time to run. At SIGTERM it writes one, too: after preemption Slurm queues it
+# again, after scancel `sbatch` of this file once more runs the rows that are missing. The page: the command that wrote
+# this file, with --read in place of --slurm.
 #SBATCH --job-name=rockwear
 #SBATCH --array=1-{count}
 #SBATCH --ntasks=1

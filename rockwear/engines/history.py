@@ -1,13 +1,14 @@
 """Rows of numbers on the disk as they come: a run killed at any time has all of its rows, and memory stays flat."""
 import io
 import os
+from itertools import islice
 
 import numpy as np
 
 from rockwear.kernels.files import naming, replacing
 
-AT_ONCE = 4096
-"""Rows that are turned into text together."""
+AT_ONCE = 256
+"""Rows that are turned into text together: the text of a whole table, at each checkpoint, takes memory for good."""
 
 
 def text_of(rows):
@@ -17,9 +18,11 @@ def text_of(rows):
 
 def write_table(path, header, rows):
     """A CSV file: a header of `name [unit]`, then rows of numbers; in place at once or not at all."""
+    rows = iter(rows)
     with replacing(path) as file:
         file.write((",".join(header) + "\n").encode())
-        file.write(text_of(rows))
+        while some := list(islice(rows, AT_ONCE)):
+            file.write(text_of(some))
 
 
 class History:

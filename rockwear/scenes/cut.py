@@ -207,6 +207,9 @@ class Cut(Scene):
     def canonical(self):
         super().canonical()
         self.tool.contact.find_contacts()
+        if not self.heat:
+            # Nobody else takes contact times, and new pairs come as long as the cut goes on.
+            self.tool.contact.take_heating()
 
     def end_stage(self, folder):
         """Close the balances of the stage; the programme prepares the next one."""

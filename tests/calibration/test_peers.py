@@ -18,7 +18,7 @@ def folder(tmp_path_factory):
     out = tmp_path_factory.mktemp("peers")
     done = run_script(ROOT / "calibration/benchmarks/peers/cut.py", *map(str, SMALL), "--out", str(out))
     assert done.code == 0, done.stderr
-    lammps.write(dict(np.load(out / "model.npz")), out, lammps.CUT, steps=100, sample=10)
+    lammps.write(dict(np.load(out / "model.npz")), out, lammps.CUT, sample=10, timed=60, rest=40)
     return out
 
 
@@ -83,3 +83,39 @@ def test_a_peer_that_cannot_be_installed_is_one_line(tmp_path, monkeypatch, caps
     assert peers.main(["lammps", str(tmp_path)]) == 1
     said = capsys.readouterr().err
     assert said.startswith("peers: ") and said.count("\n") == 1
+
+
+LOG = """Step c_force[1] c_force[2] c_sum
+     0  0  0  20
+   100 -1.5e+03  2  20
+  1000 -200  3  18
+Loop time of 2.5 on 1 procs for 1000 steps with 10 atoms
+99.0% CPU use with 1 MPI tasks x 1 OpenMP threads
+  1000 -200  3  18
+  1100 -100  4  16
+Loop time of 7.5 on 1 procs for 100 steps with 10 atoms
+50.0% CPU use with 1 MPI tasks x 1 OpenMP threads
+"""
+
+
+def test_the_peer_is_timed_over_the_first_steps(tmp_path, monkeypatch):
+    asked = {}
+    monkeypatch.setattr(lammps, "write", lambda model, folder, job, **options: asked.update(options))
+    monkeypatch.setattr(lammps, "run", lambda environment, folder: LOG)
+    rows, seconds = lammps.cut(tmp_path, {}, tmp_path, steps=1100, sample=100)
+    assert asked == {"sample": 100, "timed": 1000, "rest": 100} and seconds == pytest.approx(2.5 * 0.99 / 1000)
+    assert rows.tolist() == [[0, 0, 0, 10], [100, -1500, 2, 10], [1000, -200, 3, 9], [1100, -100, 4, 8]]
+
+
+def test_the_page_tells_forces_and_the_cost_of_the_first_steps():
+    ours = np.array([[0, 0, 0, 9], [200, -1e5, 2e4, 9], [500, -2e5, 1e4, 7], [3000, 0, 0, 3]], float)
+    theirs = ours + [[0, 0, 0, 0], [0, 0, 0, 0], [0, 1e3, 0, -1], [0, 0, 0, 0]]
+    result = {"peer": "peer", "steps": 3000, "stretch": 1e-16, "agreement": peers.agreement(ours, theirs),
+              "seconds_a_step": {"rockwear": [2e-3, 4e-3], "yade": [1e-3, 2e-3], "peer": [1e-3, 1e-3]},
+              "rows": {"rockwear": ours.tolist(), "peer": theirs.tolist()},
+              "model": {"discs": 5, "bonds": 9, "tool": 2, "velocity": 4.0, "time_step": 1e-7, "steps_a_metre": 3.6e6}}
+    text = "\n".join(peers.page(result))
+    assert "| 200 | 100 and 100 | 20 and 20 | 0 and 0 |\n| 500 | 200 and 199 | 10 and 10 | 2 and 3 |" in text
+    assert "of the first 1000 steps, means of 2 turns" in text
+    assert "| YADE with rockwear | 3 ± 1 | 3.33e+05 ± 1.1e+05 | 3 ± 1 | 3 ± 1 |" in text
+    assert peers.drawn(result)

@@ -172,6 +172,34 @@ def test_tables_name_the_versions_of_their_runs_where_one_is_another(tmp_path):
     assert "1 by 0.1.0;" in generated.write_page(page, ["words"], [tmp_path / "a"])
 
 
+def test_pages_and_files_name_the_machine(tmp_path, monkeypatch):
+    monkeypatch.setattr(generated.os, "getloadavg", lambda: (1.26, 9.0, 9.0))
+    monkeypatch.setattr(generated.os, "sched_getaffinity", lambda process: {3, 5})
+    cpuinfo = tmp_path / "cpuinfo"
+    cpuinfo.write_text("cpu family\t: 6\nmodel\t\t: 85\nmodel name\t: Some  CPU @ 2 GHz\nmodel name\t: Other\n",
+                       encoding="utf-8")
+    found = generated.machine(cpuinfo)
+    assert found == {"processor": "Some CPU @ 2 GHz", "cores": 2, "load": 1.3}
+    monkeypatch.setitem(generated.ORIGIN, "machine", found)
+    origin = generated.write_page(tmp_path / "page.md", []).replace("\n", " ")
+    assert "; Some CPU @ 2 GHz, 2 cores, load 1.3 at the start.*" in origin
+    generated.record(tmp_path / "file.png")
+    manifest = json.loads((tmp_path / "provenance.json").read_text(encoding="utf-8"))
+    assert manifest["file.png"]["machine"] == found
+
+
+def test_what_a_machine_does_not_tell_is_left_out(tmp_path, monkeypatch):
+    def unknown(*_):
+        raise OSError
+
+    monkeypatch.setattr(generated.os, "getloadavg", unknown)
+    monkeypatch.setattr(generated.os, "sched_getaffinity", lambda process: {3})
+    assert generated.machine_words(generated.machine(tmp_path / "nowhere")) == "1 core"
+    (tmp_path / "other").write_text("Processor\t: a name of another kind\n", encoding="utf-8")
+    monkeypatch.delattr(generated.os, "sched_getaffinity")
+    assert generated.machine(tmp_path / "other") == {} and generated.machine_words({}) == "unknown machine"
+
+
 def test_campaigns_say_how_their_runs_stand_and_what_ends_first_first(tmp_path, monkeypatch, capsys):
     runs = {name: Started(tmp_path / name, Future(), tmp_path / f"{name}.log") for name in ("slow", "bad", "fast")}
     runs["kept"] = Started(tmp_path / "kept")

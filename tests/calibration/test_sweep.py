@@ -230,15 +230,57 @@ def test_a_job_waits_for_whoever_writes_its_folder(tmp_path):
     assert time.time() > begin + 0.4 and holder.wait() == 0
 
 
-def test_a_job_array_runs_a_row(swept):
-    out, _, _, rows = swept
+def start_by_slurm(file, task, spool, **environment):
+    """Start a job of an array as Slurm 22.05 does: a copy of the script, in a session of its own, which appends to the
+    log. spool: stands for the folders of slurmd and of sbatch. -> (process, log)"""
+    options = dict(shlex.split(line.removeprefix("#SBATCH "))[0].removeprefix("--").partition("=")[::2]
+                   for line in file.read_text(encoding="utf-8").splitlines() if line.startswith("#SBATCH "))
+    assert options["signal"] == "B:USR1@120" and options["open-mode"] == "append" and "requeue" in options
+    log = Path(re.sub("%(.)", lambda found: {"%": "%", "a": str(task)}[found[1]], options["output"]))
+    script = spool / "job00009/slurm_script"
+    script.parent.mkdir(parents=True)
+    shutil.copyfile(file, script)
+    script.chmod(0o700)
+    with open(log, "a", encoding="utf-8") as words:
+        return subprocess.Popen([script], cwd=spool, stdin=subprocess.DEVNULL, stdout=words, stderr=words, env={
+            **os.environ, "SLURM_JOB_ID": "9", "SLURM_ARRAY_JOB_ID": "7", "SLURM_ARRAY_TASK_ID": str(task),
+            **environment}, start_new_session=True), log
+
+
+def wait_for(file):
+    """Wait until a file exists."""
+    deadline = time.time() + 120
+    while not file.exists() and time.time() < deadline:
+        time.sleep(0.02)
+
+
+def test_a_job_array_runs_a_row_and_its_failure_is_gathered(swept, tmp_path, monkeypatch, capsys):
+    out, _, _, _ = swept
+    words = [str(out.parent / "rows.table"), SCRIPT, "--out", str(out)]
     file = out / "array.sh"
-    assert slurm.write(file, rows, out.parent / "rows.table", SCRIPT, out) == 0
+    assert sweep.main([*words, "--slurm", str(file)]) == 0
     assert "#SBATCH --array=1-3\n" in file.read_text(encoding="utf-8")
-    assert subprocess.run(["bash", "-n", str(file)]).returncode == 0
-    done = subprocess.run(["bash", str(file)], env={**os.environ, "SLURM_ARRAY_TASK_ID": "3"}, capture_output=True,
-                          encoding="utf-8")
-    assert done.returncode == 1 and "failed: impossible ended with 2: error: radius_max" in done.stderr
+    process, log = start_by_slurm(file, 3, tmp_path)
+    assert process.wait(120) == 1 and log == out / "slurm-3.log"
+    line = "failed: impossible ended with 2: error: radius_max = 0.0015 m"
+    assert log.read_text(encoding="utf-8").startswith(line)
+    monkeypatch.setattr(runs.Runs, "_connect", None)
+    capsys.readouterr()
+    (out / "sweep.html").unlink()
+    assert sweep.main([*words, "--read"]) == 1
+    said = capsys.readouterr()
+    assert said.err.startswith(line) and said.out.startswith("2 of 3 rows are done, 1 failed: ")
+    assert line.removeprefix("failed: ") in (out / "sweep.html").read_text(encoding="utf-8")
+
+
+def test_rows_that_have_not_ended_are_gathered_as_such(swept, tmp_path, capsys):
+    out, _, _, _ = swept
+    shutil.copytree(out / "never", tmp_path / "never")
+    (tmp_path / "killed.log").write_text("failed: before\nanother run\n", encoding="utf-8")
+    assert sweep.main([str(out.parent / "rows.table"), SCRIPT, "--out", str(tmp_path), "--read"]) == 1
+    said = capsys.readouterr()
+    assert not said.err and said.out.startswith("1 of 3 rows are done, 0 failed: ")
+    assert (tmp_path / "sweep.html").read_text(encoding="utf-8").count("not done") == 2
 
 
 @pytest.mark.parametrize("number, requeued", [(signal.SIGUSR1, ["7_2 checkpoint"]), (signal.SIGTERM, []), (None, [])])
@@ -255,19 +297,36 @@ def test_a_job_is_queued_again_at_its_time_limit_alone(tmp_path, monkeypatch, nu
     monkeypatch.chdir(folder)
     monkeypatch.setattr(slurm.sys, "executable", str(row))
     assert slurm.write(file, [SimpleNamespace(threads=2)], "rows.table", SCRIPT, folder) == 0
-    options = [shlex.split(line.removeprefix("#SBATCH ")) for line in file.read_text(encoding="utf-8").splitlines()
-               if line.startswith("#SBATCH ")]
-    assert [f"--output={folder}/slurm-%a.log".replace(" %/", " %%/")] in options and ["--signal=B:USR1@120"] in options
-    process = subprocess.Popen(["bash", str(file)], env={
-        **os.environ, "PATH": f"{folder}:{os.environ['PATH']}", "SLURM_JOB_ID": "9", "SLURM_ARRAY_JOB_ID": "7",
-        "SLURM_ARRAY_TASK_ID": "2"})
-    deadline = time.time() + 60
-    while not (folder / "begun").exists() and time.time() < deadline:
-        time.sleep(0.02)
-    if number:
+    process, log = start_by_slurm(file, 2, tmp_path / "spool", PATH=f"{folder}:{os.environ['PATH']}")
+    assert log == folder / "slurm-2.log"
+    wait_for(folder / "begun")
+    if number == signal.SIGTERM:
+        os.killpg(process.pid, number)
+    elif number:
         process.send_signal(number)
     assert process.wait(60) == 143 and (folder / "checkpoint").exists() == bool(number)
     assert [file.read_text(encoding="utf-8").strip() for file in folder.glob("requeued")] == requeued
+
+
+def test_a_cancelled_job_ends_once_its_run_has_written_its_checkpoint(tmp_path, monkeypatch):
+    """scancel signals all processes of a job at once, and the script the row's once more."""
+    yade = tmp_path / "yade"
+    yade.write_text(f"""#!/bin/bash
+case "$*" in *" --out "*) ;; *) exec {shutil.which("yade")} "$@";; esac
+trap 'sleep 1; touch {tmp_path}/checkpoint; exit 143' TERM
+touch {tmp_path}/begun
+while :; do sleep 0.05; done
+""", encoding="utf-8")
+    yade.chmod(0o755)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("PATH", f"{tmp_path}:{os.environ['PATH']}")
+    words = table(tmp_path / "rows.table", "description seed", "a 1")
+    assert sweep.main([words, SCRIPT, "--out", "out", "--slurm", "array.sh"]) == 0
+    process, log = start_by_slurm(tmp_path / "array.sh", 1, tmp_path / "spool")
+    wait_for(tmp_path / "begun")
+    os.killpg(process.pid, signal.SIGTERM)
+    assert process.wait(60) == 143 and (tmp_path / "checkpoint").exists()
+    assert log.read_text(encoding="utf-8").count("stopped by signal 15") == 1
 
 
 def test_the_page_draws_each_swept_parameter_and_links_the_reports(tmp_path, capsys):

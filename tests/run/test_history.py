@@ -2,6 +2,7 @@
 import errno
 import subprocess
 import sys
+import tracemalloc
 
 import numpy as np
 import pytest
@@ -30,6 +31,14 @@ def test_rows_are_on_the_disk_at_once_and_exact(tmp_path):
     assert np.array_equal(history.rows, ROWS) and np.array_equal(np.fromfile(tmp_path / "rows.f8"), np.ravel(ROWS))
     history.append(HEADER, [1.0, np.nan])
     assert history.rows[-1, 0] == 1.0 and (tmp_path / "rows.csv").read_bytes().endswith(b"\n1,nan\n")
+
+
+def test_a_table_takes_no_memory_for_its_whole_text(tmp_path):
+    tracemalloc.start()
+    write_table(tmp_path / "table.csv", HEADER, iter(ROWS))
+    most = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert most < 0.5 * (tmp_path / "table.csv").stat().st_size
 
 
 @pytest.mark.parametrize("left", [5000, 1, 0])

@@ -68,6 +68,11 @@ def test_memory_stays_flat_as_the_cut_goes_on(never):
     assert 1e8 < middle <= never.summary["peak_memory"]["value"] and end - middle < 3e5
 
 
+def test_contact_times_do_not_pile_up_where_nothing_conducts_heat(never):
+    state, = never.out.glob("checkpoint/*/state.npz")
+    assert len(np.load(state)["scene/engines/tool_contact/touching"]) == 0
+
+
 def test_a_cut_goes_on_as_if_it_was_never_stopped(never, tmp_path):
     options = {**SMALL, **never.options, "checkpoint_interval": 0.01}
     out, tables = tmp_path / "again", ("cracks.csv", "groove.csv", "chips.csv")

