@@ -7,7 +7,7 @@ the tip: a window moves along the path, and its ends absorb waves. With
     --window false
 all rock along the path is there, in a layer of `backing`, and with --full so are the source's 92,000 discs. With
     --scale_factor 1 --window_behind 0.06 --backing 0.04 --time_step_fraction 0.95 --time_scale 10
-three turns in the source's discs take 70 minutes; calibration/results/dredging.md tells what that costs in accuracy.
+three turns in the source's discs take an hour; calibration/results/dredging.md tells what that costs in accuracy.
 
 The dredging of [Rojek 2003, ch. 12], in the sandstone of its 5.1, is
     --kt 20e9 --Rt 1e6 --mu 0.839 --hardness_table MET91 --wear_coefficient 0.01128      and
