@@ -1,0 +1,301 @@
+"""Loops over bonds and contacts of YADE, from where they lie in memory, compiled to machine code by numba.
+
+Each is a function of arrays. `memory` is all memory of the process as numbers (engines.memory.MEMORY), and a place an
+index into it. numpy takes a microsecond for each of its operations, for ten bonds as for one: these loops take as long
+for all that is to be done with some bonds. Machine code is kept beside this file, or in the user's cache, and made anew
+when this file changes. It would not be if another file did: what compiled functions call must therefore be here.
+"""
+import math
+
+import numpy as np
+from numba import njit
+
+
+def compiled(function):
+    """The function as machine code, kept for other runs where a folder can be written."""
+    try:
+        return njit(cache=True, error_model="numpy")(function)
+    except RuntimeError:
+        return njit(error_model="numpy")(function)
+
+
+# ---- bonds of YADE's concrete model
+
+BOND = ("normal", "increment", "normal_force", "shear_force", "strain", "slipped", "omega", "cohesion", "length", "E",
+        "G", "onset", "fracture", "kappa", "crushed", "radius1", "radius2", "overlap")
+"""What a table of the places of bonds holds, (30, m): three rows for each of the six vectors, one for each number."""
+(NORMAL, INCREMENT, NORMAL_FORCE, SHEAR_FORCE, STRAIN, SLIPPED, OMEGA, COHESION, LENGTH, E, G, ONSET, FRACTURE, KAPPA,
+ CRUSHED, RADIUS1, RADIUS2, OVERLAP) = (*range(0, 18, 3), *range(18, 30))
+"""Rows of that table, of vectors the first one."""
+LAW = "kn", "kt", "Rn", "Rt", "mu", "onset", "gone", "slip_end", "coupling", "Rc"
+"""Attributes of a law of kernels.bond_laws.Cohesive that a table of laws holds, (10, m)."""
+KN, KT, RN, RT, MU, OPEN_AT_PEAK, OPEN_AT_END, SLIP_END, COUPLING, RC = range(10)
+"""Rows of that table."""
+SPENT = 1.0 - 1e-6
+"""Damage of a bond that slip has broken: YADE keeps it, as a contact with friction, until it opens."""
+CRUSHING_STRAIN = 0.01
+"""Elastic compressive strain at which YADE lets all bonds crush."""
+
+
+@compiled
+def read(memory, place):
+    """The vector at a place, a tuple."""
+    return memory[place], memory[place + 1], memory[place + 2]
+
+
+@compiled
+def write(memory, place, x, y, z):
+    """Set the vector at a place."""
+    memory[place], memory[place + 1], memory[place + 2] = x, y, z
+
+
+@compiled
+def dot(a, b):
+    """Of two vectors."""
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+@compiled
+def vanishes(a):
+    """Whether a vector is 0."""
+    return a[0] == 0.0 and a[1] == 0.0 and a[2] == 0.0
+
+
+@compiled
+def opening(softening, onset, gone):
+    """Largest opening so far of a bond of this omega > 0; it, `onset` and `gone`, at the peak and at the end, in m or
+    as strains."""
+    return onset / (1.0 - softening * (1.0 - onset / gone))
+
+
+@compiled
+def softening_energy(softening, Rn, onset, gone):
+    """Energy (J) that softening to this omega has dissipated. Rn: N, the strength; onset, gone: m, see `opening`."""
+    u = opening(softening, onset, gone)
+    # Under the curve up to u, less what unloading along the secant gives back.
+    force = Rn * (gone - u) / (gone - onset)
+    return 0.5 * (Rn * onset + (Rn + force) * (u - onset) - force * u)
+
+
+@compiled
+def set_damage(memory, where, n, omega):
+    """CpmPhys.setDamage of a bond that can break: its damage, and the strain from which on it rises."""
+    strain = opening(omega, memory[where[ONSET, n]], memory[where[FRACTURE, n]])
+    memory[where[OMEGA, n]] = omega
+    memory[where[KAPPA, n]] = strain if omega > 0.0 else 0.0
+
+
+@compiled
+def set_cohesion(memory, where, n, laws):
+    """Set the cohesion of a bond in YADE, of which it takes the part 1 - omega, to Rt / (1 - q omega)."""
+    memory[where[COHESION, n]] = laws[RT, n] / (1.0 - laws[COUPLING, n] * memory[where[OMEGA, n]])
+
+
+@compiled
+def set_damages(memory, where, numbers, omega):
+    """`set_damage` of bonds (k,) to omega (k,)."""
+    for k, n in enumerate(numbers):
+        set_damage(memory, where, n, omega[k])
+
+
+@compiled
+def weaken(memory, where, numbers, laws):
+    """`set_cohesion` of bonds (k,)."""
+    for n in numbers:
+        set_cohesion(memory, where, n, laws)
+
+
+@compiled
+def let_slip(memory, where, numbers, laws, lengths):
+    """Leave loose bonds (k,) the elastic part of their shear strains, as `relieve` does, but without the turn into the
+    plane of the contact: that is for looks, this comes in every step. lengths: (m,) m."""
+    for n in numbers:
+        x, y, z = read(memory, where[SHEAR_FORCE, n])
+        stiffness = -laws[KT, n] * lengths[n]
+        write(memory, where[STRAIN, n], x / stiffness, y / stiffness, z / stiffness)
+        write(memory, where[SLIPPED, n], 0.0, 0.0, 0.0)
+
+
+@compiled
+def slip_and_force(memory, where, there, active):
+    """Of those of the bonds `there` (k,) that are `active` (m,) bool: numbers (l,), slip, a strain, and shear force (N)
+    (l, 6)."""
+    numbers, found, count = np.empty(len(there), np.int64), np.empty((len(there), 6)), 0
+    for n in there:
+        if active[n]:
+            numbers[count] = n
+            for along in range(3):
+                found[count, along] = memory[where[SLIPPED, n] + along]
+                found[count, 3 + along] = memory[where[SHEAR_FORCE, n] + along]
+            count += 1
+    return numbers[:count].copy(), found[:count].copy()
+
+
+@compiled
+def sample_slip(memory, where, numbers, before, status, separated, by_radii, steps, laws, dissipated, by_slip):
+    """Add the work of slip of bonds (k,) in the last step, so many `steps` times, to sums (m,) J. -> J, of all.
+
+    before: (k, 6), see `slip_and_force`. The work is the mean of the forces before and after the step times how far
+    they moved, less what the spring stores of it. They moved by YADE's increment, where that is `by_radii` without the
+    factor, radii over distance, of translations (kernels.stability). Bonds that are `separated` by their status (m,)
+    are no longer in memory.
+    """
+    total = 0.0
+    for k, n in enumerate(numbers):
+        if status[n] == separated:
+            continue
+        slip, force = read(memory, where[SLIPPED, n]), read(memory, where[SHEAR_FORCE, n])
+        force_before = before[k, 3], before[k, 4], before[k, 5]
+        # YADE leaves the slip of a bond without any shear strength as it is.
+        if (slip[0] == before[k, 0] and slip[1] == before[k, 1] and slip[2] == before[k, 2]
+                and not (vanishes(force) and not vanishes(force_before))):
+            continue
+        scale = 1.0
+        if by_radii:
+            scale -= memory[where[OVERLAP, n]] / (memory[where[RADIUS1, n]] + memory[where[RADIUS2, n]])
+        x, y, z = read(memory, where[INCREMENT, n])
+        both = force[0] + force_before[0], force[1] + force_before[1], force[2] + force_before[2]
+        work = -dot(both, (x * scale, y * scale, z * scale))
+        stored = (dot(force, force) - dot(force_before, force_before)) / laws[KT, n]
+        work = 0.5 * steps * (work - stored)
+        dissipated[n] += work
+        by_slip[n] += work
+        total += work
+    return total
+
+
+@compiled
+def harden(memory, where, n, laws, hardening, strains, lengths):
+    """Take note of YADE's plastic strain of bond n, and let its crushing strength grow. -> work, J.
+
+    The reference length grows so that CRUSHING_STRAIN of it is the new strength (Rc + h kn up)/kn, and what is
+    constant in metres, or as a force, stays so.
+    """
+    strain, kn, length = memory[where[CRUSHED, n]], laws[KN, n], lengths[n]
+    work = kn * CRUSHING_STRAIN * length**2 * (strains[n] - strain)
+    grown = (laws[RC, n] / (kn * length) - hardening * strain) / CRUSHING_STRAIN
+    for row in (LENGTH, E, G):
+        memory[where[row, n]] *= grown
+    for row in (ONSET, FRACTURE, KAPPA, CRUSHED):
+        memory[where[row, n]] /= grown
+    for row in (STRAIN, SLIPPED):
+        for along in range(3):
+            memory[where[row + along, n]] /= grown
+    # As a restart reads them.
+    lengths[n], strains[n] = memory[where[LENGTH, n]], memory[where[CRUSHED, n]]
+    return work
+
+
+@compiled
+def look(memory, where, there, laws, hardening, crushes, omega, active, strains, lengths, dissipated, by_slip):
+    """Which of the bonds `there` (k,) softened or slipped since the last look, and harden those that crushed.
+
+    omega, active: (m,), as of the last look; strains: (m,), YADE's plastic ones, lengths: (m,) m, brought up to date;
+    crushes: whether bonds crush, hardening: their h. -> numbers (l,), their omega now (l,), and the work (J) of
+    crushing, which is added to the sums (m,) J.
+    """
+    numbers, now, count, work = np.empty(len(there), np.int64), np.empty(len(there)), 0, 0.0
+    for n in there:
+        found = memory[where[OMEGA, n]]
+        if (found != omega[n] or not vanishes(read(memory, where[SLIPPED, n]))
+                or active[n] and vanishes(read(memory, where[SHEAR_FORCE, n]))):
+            numbers[count], now[count] = n, found
+            count += 1
+        if crushes and memory[where[CRUSHED, n]] != strains[n]:
+            one = harden(memory, where, n, laws, hardening, strains, lengths)
+            dissipated[n] += one
+            by_slip[n] += one
+            work += one
+    return numbers[:count].copy(), now[:count].copy(), work
+
+
+@compiled
+def soften(numbers, now, omega, laws, dissipated):
+    """Set the damage omega (m,) of bonds (k,) to what it is `now` (k,), and add to the sum (m,) J what that dissipated.
+
+    -> numbers of those whose damage rose and that hold on by a coupled cohesion, of those that YADE has broken, J.
+    """
+    rising, gone, risen, broken, total = np.empty_like(numbers), np.empty_like(numbers), 0, 0, 0.0
+    for k, n in enumerate(numbers):
+        before, omega[n] = omega[n], now[k]
+        if not now[k] > before:
+            continue
+        Rn, onset, end = laws[RN, n], laws[OPEN_AT_PEAK, n], laws[OPEN_AT_END, n]
+        work = softening_energy(min(now[k], 1.0), Rn, onset, end) - softening_energy(before, Rn, onset, end)
+        dissipated[n] += work
+        total += work
+        if now[k] >= 1.0:
+            gone[broken] = n
+            broken += 1
+        elif laws[COUPLING, n] > 0.0:
+            rising[risen] = n
+            risen += 1
+    return rising[:risen].copy(), gone[:broken].copy(), total
+
+
+@compiled
+def take_slip(memory, where, n, stiffness):
+    """Take the slip out of YADE's shear strain of bond n and leave the elastic part, in the plane of the contact.
+    stiffness: N, force over strain. -> the slip, a strain."""
+    normal, force = read(memory, where[NORMAL, n]), read(memory, where[SHEAR_FORCE, n])
+    along = dot(force, normal)
+    x, y, z = force[0] - normal[0] * along, force[1] - normal[1] * along, force[2] - normal[2] * along
+    length = math.sqrt(dot((x, y, z), (x, y, z)))
+    # As long as the force, nearly in the plane of which it lies.
+    scale = math.sqrt(dot(force, force)) / (-length * stiffness if length > 0.0 else 1.0)
+    x, y, z = x * scale, y * scale, z * scale
+    strain = read(memory, where[STRAIN, n])
+    slip = strain[0] - x, strain[1] - y, strain[2] - z
+    write(memory, where[STRAIN, n], x, y, z)
+    write(memory, where[SLIPPED, n], 0.0, 0.0, 0.0)
+    return math.sqrt(dot(slip, slip))
+
+
+@compiled
+def damage(memory, where, n, laws, slip, before, falls):
+    """Raise the damage `before` of bond n by its slip (m). In the next step its forces fall to what the law then
+    allows; what that dissipates is given now, and the forces, which YADE only gives out, are those of then.
+
+    falls: whether the shear force does so, too; where every step is sampled, the slip of the next one is in its sample.
+    -> the damage now, J of tension, J of slip.
+    """
+    coupling = laws[COUPLING, n]
+    left = max((1.0 - before) / (1.0 - coupling * before) - slip / laws[SLIP_END, n], 0.0)
+    omega = min((1.0 - left) / (1.0 - coupling * left), SPENT)
+    force, shear = read(memory, where[NORMAL_FORCE, n]), read(memory, where[SHEAR_FORCE, n])
+    Fn = -dot(force, read(memory, where[NORMAL, n]))
+    Ft = math.sqrt(dot(shear, shear))
+    kept = (1.0 - omega) / (1.0 - before) if Fn > 0.0 else 1.0
+    tension, by_slip = 0.5 * Fn**2 * (1.0 - kept) / (laws[KN, n] * (1.0 - before)), 0.0
+    write(memory, where[NORMAL_FORCE, n], force[0] * kept, force[1] * kept, force[2] * kept)
+    limit = max(left * laws[RT, n] - laws[MU, n] * kept * Fn, 0.0)
+    if falls and Ft > limit:
+        by_slip = 0.5 * (Ft**2 - limit**2) / laws[KT, n]
+        scale = limit / Ft
+        write(memory, where[SHEAR_FORCE, n], shear[0] * scale, shear[1] * scale, shear[2] * scale)
+    return omega, tension, by_slip
+
+
+@compiled
+def relieve(memory, where, numbers, laws, falls, omega, lengths, dissipated, by_slip):
+    """Take the slip out of bonds (k,), damage them by it, and set their cohesion in YADE.
+
+    omega: (m,), lengths: (m,) m; falls: see `damage`; the work is added to sums (m,) J. -> numbers of those that slip
+    has broken, J.
+    """
+    spent, count, total = np.empty_like(numbers), 0, 0.0
+    for n in numbers:
+        slip = take_slip(memory, where, n, laws[KT, n] * lengths[n]) * lengths[n]
+        if slip > 0.0 and omega[n] < SPENT and laws[SLIP_END, n] < math.inf:
+            omega[n], tension, slid = damage(memory, where, n, laws, slip, omega[n], falls)
+            dissipated[n] += tension
+            dissipated[n] += slid
+            by_slip[n] += slid
+            total += tension + slid
+            set_damage(memory, where, n, omega[n])
+            if omega[n] == SPENT:
+                spent[count] = n
+                count += 1
+        if laws[COUPLING, n] > 0.0:
+            set_cohesion(memory, where, n, laws)
+    return spent[:count].copy(), total
