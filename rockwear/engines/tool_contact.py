@@ -1,35 +1,19 @@
 """Contacts of the tool: forces, friction work by particle, and the time that each pair is in contact."""
-import math
 from collections import namedtuple
 
 import numpy as np
 
 from yade import InsertionSortCollider, O
 
-from rockwear.engines.access import SLIDING, contact_energy, yade_engine
+from rockwear.engines.access import contact_energy, yade_engine
 from rockwear.engines.base import FORCES, Engine
-from rockwear.engines.memory import ContactReader, place
+from rockwear.engines.memory import MEMORY, WORDS, kernel_layout, list_of_bodies, place
+from rockwear.kernels import compiled
 from rockwear.kernels.wear_laws import NORMAL, WORK
 
 Contact = namedtuple("Contact", "interaction piece rock tool_first")
 """A contact of the tool: YADE's interaction, the tool's piece (particle or facet) and the rock particle, and whether
 the piece is the interaction's first body."""
-
-Values = namedtuple("Values", "normal_force shear_force viscous_force friction ks cn normal increment")
-"""What YADE has of a contact now: forces (N), its friction, stiffness (N/m) and damping (N s/m), the normal and the
-shear increment (m) of the step; vectors are tuples."""
-NO_FORCE = (0.0, 0.0, 0.0)
-"""N, in a contact that has just been made."""
-
-
-def dot(a, b):
-    """Of two vectors."""
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-
-
-def norm(a):
-    """Of a vector."""
-    return math.sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2])
 
 
 class ToolContact(Engine):
@@ -39,12 +23,11 @@ class ToolContact(Engine):
     (force, exponent) of F^exponent times slip by piece that the wear law takes (kernels.wear_laws); sampling_period:
     steps between samples, each of which stands for all of them. To be called at every step.
 
-    A contact that slides dissipates the slip that its spring does not take up, (|trial force| - |Ft|) / ks, times the
-    mean of the forces before and after the step, so that the work of the leapfrog integrator and the energy of the
-    springs balance exactly. (YADE's sum of plastic dissipation takes the force after the step. A collision lasts about
-    ten steps and begins with the dashpot's full force: a cut of 12 ms was 4 % short, single collisions by a factor.)
-    Tool work, F v dt with the velocity of the tool at the contact point, and the work of the contact dashpots are
-    sampled with it. Only contacts that the collider has found possible since it last ran are examined.
+    A contact that slides dissipates its slip times the mean of the forces before and after the step
+    (kernels.compiled.sample_tool, tool_slip). (YADE's sum of plastic dissipation takes the force after the step. A
+    collision lasts about ten steps and begins with the dashpot's full force: a cut of 12 ms was 4 % short, single
+    collisions by a factor.) Tool work and the work of the contact dashpots are sampled with it. Only contacts that the
+    collider has found possible since it last ran are examined.
 
     `reshaping_energy` (J) is that with which contacts begin when the tool's shape changes: no work is done for it.
     """
@@ -52,22 +35,33 @@ class ToolContact(Engine):
     name = "tool_contact"
     phase = FORCES
     reshaping_energy = 0.0
+    least_stiffness = 0.0
+    """N/m, of contacts that count."""
 
     def __init__(self, *, tool, motion, needs=(WORK,), sampling_period=1, period=1):
         super().__init__(period=period)
         self.tool, self.motion, self.sampling_period = tool, motion, sampling_period
         self.tool_work = np.zeros(tool.count)
         self.rock_work = np.zeros(len(motion.per_mass))
-        self.slid = {need: np.zeros(tool.count) for need in dict.fromkeys((WORK, *needs))}
-        self.touching = {}
+        needs = list(dict.fromkeys((WORK, *needs)))
+        self.presses = np.array([kind == NORMAL for kind, _ in needs])
+        self.exponents = np.array([exponent for _, exponent in needs], float)
+        self._begin_slid(needs)
+        self.touching, self.possible = {}, []
+        self.before, self.real = np.zeros((0, 3)), np.zeros(0, bool)
+        """Shear forces (N) of `possible` before this step, and which were in contact then."""
         self.friction = self.work_done = self.dashpot_dissipated = 0.0
         self.impulse = np.zeros(3)
-        self.constants, self.geometry = (ContactReader(part, *names) for part, names in (
-            ("phys", Values._fields[:6]), ("geom", Values._fields[6:])))
+
+    def _begin_slid(self, needs):
+        self.sums = np.zeros((len(needs), self.tool.count))
+        self.slid = dict(zip(needs, self.sums))
 
     def connect(self):
+        self.layout, self.bodies = kernel_layout(), list_of_bodies()
+        self.possible = []
         self.find_contacts()
-        self._store_shear(self._now())
+        self._store_shear()
 
     def find_contacts(self):
         """Find the contacts that the collider holds possible now."""
@@ -85,103 +79,56 @@ class ToolContact(Engine):
         self._keep([contact for contact in self.possible if contact.piece in self.tool.body_of])
 
     def _keep(self, contacts):
+        row = {contact[1:3]: k for k, contact in enumerate(self.possible)}
+        before, real = self.before, self.real
+        self.before, self.real = np.zeros((len(contacts), 3)), np.zeros(len(contacts), bool)
+        for k, contact in enumerate(contacts):
+            if contact[1:3] in row:
+                known = row[contact[1:3]]
+                self.before[k], self.real[k] = before[known], real[known]
         # What Python holds keeps its place in memory.
-        self.possible, self.places = contacts, [place(contact.interaction) for contact in contacts]
+        self.possible = contacts
+        self.places, self.pieces, self.rocks = (np.array(values, int) for values in (
+            [place(contact.interaction) for contact in contacts], [contact.piece for contact in contacts],
+            [contact.rock for contact in contacts]))
+        self.first = np.array([contact.tool_first for contact in contacts], bool)
 
     def act(self):
         if self.collider.numAction != self.collided:
             self.find_contacts()
         sampled, stored = O.iter % self.sampling_period == 0, (O.iter + 1) % self.sampling_period == 0
-        if sampled or stored:
-            now = self._now()
-            if sampled:
-                self._sample_all(now)
-            if stored:
-                self._store_shear(now)
+        if sampled:
+            self._sample_all()
+        if stored:
+            self._store_shear()
 
-    def _now(self):
-        """[(contact, Values)] of those of `possible` that are in contact now."""
-        return [(contact, self._values(where)) for contact, where in zip(self.possible, self.places)
-                if contact[0].isReal]
-
-    def _values(self, where):
-        """Values of the contact at this place in memory, which must be in contact now."""
-        constants, geometry = self.constants.of(where), self.geometry.of(where)
-        return Values(constants[:3], constants[3:6], constants[6:9], *constants[9:], geometry[:3], geometry[3:])
-
-    def _sample_all(self, now):
+    def _sample_all(self):
+        """Sample those of `possible` that are in contact now. -> J, friction as YADE counts it."""
         elapsed = self.elapsed()
-        for contact, values in now:
-            self._sample(contact, values, elapsed)
-
-    def _store_shear(self, now):
-        self.shear_before = {contact[1:3]: values.shear_force for contact, values in now}
-
-    def _sample(self, contact, now, elapsed):
-        interaction, piece, rock, tool_first = contact
-        normal, shear = now.normal_force, now.shear_force
-        # YADE puts N + S on the second body and its opposite on the first.
-        sign = -elapsed if tool_first else elapsed
-        x, y, z = (normal[0] + shear[0]) * sign, (normal[1] + shear[1]) * sign, (normal[2] + shear[2]) * sign
-        self.impulse[0] += x
-        self.impulse[1] += y
-        self.impulse[2] += z
-        vx, vy, vz = self.tool.velocity_at(piece, interaction, tool_first)
-        self.work_done -= x * vx + y * vy + z * vz
-        self.touching[piece, rock] = self.touching.get((piece, rock), 0.0) + elapsed
-        if now.cn > 0:
-            dashpot = now.viscous_force
-            gain = dot(dashpot, self.motion.of(rock)) * (0.5 if tool_first else -0.5)
-            self.dashpot_dissipated += (dot(dashpot, dashpot) / now.cn + gain) * elapsed
-        tangential = norm(shear)
-        if tangential > 0 and tangential >= SLIDING * now.friction * norm(normal):
-            before, slip = self._slip(contact, now)
-            self._add_slip(contact, now, before, tangential, slip * elapsed / O.dt)
-
-    def _add_slip(self, contact, now, before, after, slip):
-        """Add a slip (m) under a tangential force (N) before and after the step to all sums."""
-        _, piece, rock, _ = contact
-        force = 0.5 * (before + after)
-        work = force * slip
-        self.friction += work
-        self.tool_work[piece] += work
-        self.rock_work[rock] += work
-        # A dashpot may pull; only compression presses the surfaces together.
-        pressing = max(dot(now.normal_force, now.normal), 0.0)
-        for (kind, exponent), summed in self.slid.items():
-            summed[piece] += (pressing if kind == NORMAL else force)**exponent * slip
-
-    def _slip(self, contact, now):
-        """Tangential force (N) before this step, and the irreversible slip (m) in it."""
-        ks, (nx, ny, nz) = now.ks, now.normal
-        x, y, z = (-ks * along for along in now.increment)
-        before = self.shear_before.get(contact[1:3], NO_FORCE)
-        size = norm(before)
-        if size > 0:
-            # YADE rotates the spring with the contact.
-            along = dot(before, now.normal)
-            rotated = before[0] - nx * along, before[1] - ny * along, before[2] - nz * along
-            scale = size / norm(rotated)
-            x, y, z = x + rotated[0] * scale, y + rotated[1] * scale, z + rotated[2] * scale
-        slip = max(norm((x, y, z)) - norm(now.shear_force), 0.0) / ks
-        return size, slip - self._excess(contact.interaction, now, slip) if slip > 0 else 0.0
-
-    @staticmethod
-    def _excess(interaction, now, slip):
-        """Excess (m) of YADE's slip over that of the surfaces at the contact point, over which forces work: YADE
-        rotates spheres about their full radii and scales translations to match (kernels.stability)."""
-        force, increment = now.shear_force, now.increment
-        size, length = norm(force), norm(increment)
-        if not size * length > 0:
+        numbers = compiled.touching(MEMORY, WORDS, self.layout, self.places, self.least_stiffness)
+        if not len(numbers):
             return 0.0
-        way = interaction.geom.incidentVel(interaction, False) * O.dt
-        excess = dot(force, (way[0] - increment[0], way[1] - increment[1], way[2] - increment[2])) / size
-        # Part of the step's displacement may have gone into the spring.
-        return excess * min(slip / length, 1.0)
+        rocks = []
+        for k in numbers.tolist():
+            _, piece, rock, _ = self.possible[k]
+            self.touching[piece, rock] = self.touching.get((piece, rock), 0.0) + elapsed
+            rocks.append(rock)
+        friction, done, dashpots, in_yade = compiled.sample_tool(
+            MEMORY, WORDS, self.layout, self.bodies, numbers, self.places, self.pieces, self.rocks, self.first,
+            self.before, self.motion.of(rocks), elapsed, O.dt, self.presses, self.exponents, self.tool_work,
+            self.rock_work, self.sums, self.impulse)
+        self.friction += friction
+        self.work_done += done
+        self.dashpot_dissipated += dashpots
+        return in_yade
+
+    def _store_shear(self):
+        compiled.shear_forces(MEMORY, WORDS, self.layout, self.places, self.before, self.real)
 
     def take_slid(self):
         """{(force, exponent): (m,) sum of F^exponent times slip, N^exponent m} by piece since the last call."""
-        taken, self.slid = self.slid, {need: np.zeros(self.tool.count) for need in self.slid}
+        taken = self.slid
+        self._begin_slid(taken)
         return taken
 
     @property
@@ -209,7 +156,7 @@ class ToolContact(Engine):
     def state(self):
         pairs = sorted(self.touching)
         return {"tool_work": self.tool_work.copy(), "rock_work": self.rock_work.copy(),
-                "slid": np.array(list(self.slid.values())),
+                "slid": self.sums.copy(),
                 "touching": np.array([(i, j, self.touching[i, j]) for i, j in pairs], float).reshape(-1, 3),
                 "friction": self.friction, "work_done": self.work_done,
                 "dashpot_dissipated": self.dashpot_dissipated, "impulse": self.impulse.copy()}
@@ -217,7 +164,8 @@ class ToolContact(Engine):
     def restore(self, state):
         for name in ("tool_work", "rock_work", "impulse"):
             setattr(self, name, state[name].copy())
-        self.slid = dict(zip(self.slid, state["slid"].copy()))
+        self._begin_slid(self.slid)
+        self.sums[:] = state["slid"]
         self.touching = {(int(i), int(j)): t for i, j, t in state["touching"].tolist()}
         for name in ("friction", "work_done", "dashpot_dissipated"):
             setattr(self, name, float(state[name]))

@@ -1,4 +1,5 @@
 """Increments of velocity that the integrator will apply in this step."""
+import numpy as np
 from yade import O
 
 
@@ -15,17 +16,30 @@ class VelocityIncrement:
     def __init__(self, *, masses, inertias, radii, fixed, gravity=None):
         self.per_mass = [0.0 if fixed else 1 / m for m, fixed in zip(masses.tolist(), fixed)]
         self.per_inertia = [0.0 if fixed else 1 / i for i, fixed in zip(inertias.tolist(), fixed)]
-        self.radii = radii.tolist()
+        self.radii = np.array(radii, float)
         self.gravity = gravity
 
-    def of(self, body):
-        """Change of a body's velocity, m/s."""
-        change = O.forces.f(body) * (self.per_mass[body] * O.dt)
-        return change + self.gravity * O.dt if self.gravity and self.per_mass[body] else change
+    def of(self, bodies):
+        """(k, 3) m/s, changes of the velocities of bodies, integers."""
+        changes = self.by_forces(bodies)
+        if self.gravity:
+            for change, body in zip(changes, bodies):
+                if self.per_mass[body]:
+                    change += np.array(self.gravity) * O.dt
+        return changes
 
-    def gain(self, interaction, normal):
-        """Change of the relative velocity (second to first body) at the contact point of two particles, m/s."""
-        first, second, force, torque = interaction.id1, interaction.id2, O.forces.f, O.forces.t
-        turn = (torque(first) * (self.radii[first] * self.per_inertia[first])
-                + torque(second) * (self.radii[second] * self.per_inertia[second]))
-        return (force(second) * self.per_mass[second] - force(first) * self.per_mass[first] - turn.cross(normal)) * O.dt
+    def by_forces(self, bodies):
+        """(k, 3) m/s, changes of the velocities of bodies, integers, but for gravity."""
+        return self._changes(bodies, O.forces.f, self.per_mass)
+
+    def turning(self, bodies):
+        """(k, 3) rad/s, changes of the angular velocities of bodies, integers."""
+        return self._changes(bodies, O.forces.t, self.per_inertia)
+
+    @staticmethod
+    def _changes(bodies, exerted, per_inertia):
+        dt, rows = O.dt, []
+        for body in bodies:
+            one, scale = exerted(body), per_inertia[body] * dt
+            rows.append((one[0] * scale, one[1] * scale, one[2] * scale))
+        return np.array(rows)

@@ -299,3 +299,264 @@ def relieve(memory, where, numbers, laws, falls, omega, lengths, dissipated, by_
         if laws[COUPLING, n] > 0.0:
             set_cohesion(memory, where, n, laws)
     return spent[:count].copy(), total
+
+
+# ---- contacts with friction
+
+CONTACT = ("geom", "phys", "bodies", "normal_force", "shear_force", "viscous_force", "friction", "kn", "ks", "cn",
+           "normal", "increment", "point", "state", "velocity", "spin", "position")
+"""What a layout of contacts and bodies says, (17,), of each how far behind it lies: behind a contact, pointers to its
+geometry and its constants and its two bodies; behind the constants, the forces (N), the friction, stiffness and damping
+(N/m, N s/m); behind the geometry, the normal, the shear increment (m) of the step and the point of contact (m); behind
+a body, the pointer to its state; behind the state, its motion (m/s, rad/s) and place (m)."""
+(GEOMETRY, CONSTANTS, BODIES, OF_NORMAL, OF_SHEAR, OF_DASHPOT, FRICTION, STIFFNESS, SHEAR_STIFFNESS, DAMPING, DIRECTION,
+ MOVED, POINT, STATE, VELOCITY, SPIN, POSITION) = range(17)
+"""Where in a layout it does."""
+SLIDING = 1 - 1e-9
+"""|Ft| / mu |Fn| from which a contact slid in this step: YADE's laws return it to Coulomb's limit to round-off. (A
+looser test counts contacts that oscillate near the limit as sliding, and their work adds up.)"""
+
+
+@compiled
+def norm(a):
+    """Of a vector."""
+    return math.sqrt(dot(a, a))
+
+
+@compiled
+def less(a, b):
+    """Difference of two vectors."""
+    return a[0] - b[0], a[1] - b[1], a[2] - b[2]
+
+
+@compiled
+def cross(a, b):
+    """Of two vectors."""
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+
+
+@compiled
+def pointed(pointer):
+    """Index in memory of what a pointer points to."""
+    return (pointer >> 3) - 1
+
+
+@compiled
+def is_real(words, layout, contact):
+    """Whether this contact, at its place, is in contact now."""
+    return words[contact + layout[GEOMETRY]] != 0 and words[contact + layout[CONSTANTS]] != 0
+
+
+@compiled
+def ends_of(words, layout, contact):
+    """The two bodies of a contact."""
+    both = words[contact + layout[BODIES]]
+    return both & 0xffffffff, both >> 32
+
+
+@compiled
+def is_there(words, bodies, body):
+    """Whether a body has not been erased. bodies: place of the pointer to the list of them."""
+    return words[pointed(words[bodies]) + 2 * body] != 0
+
+
+@compiled
+def velocity_at(memory, words, layout, bodies, body, point):
+    """m/s of a point (m) of a rigid body that is there."""
+    one = pointed(words[pointed(words[bodies]) + 2 * body])
+    state = pointed(words[one + layout[STATE]])
+    velocity = read(memory, state + layout[VELOCITY])
+    turning = cross(read(memory, state + layout[SPIN]), less(point, read(memory, state + layout[POSITION])))
+    return velocity[0] + turning[0], velocity[1] + turning[1], velocity[2] + turning[2]
+
+
+@compiled
+def velocities(memory, words, layout, bodies, contact):
+    """m/s of the first and of the second body at the point of contact."""
+    first, second = ends_of(words, layout, contact)
+    point = read(memory, pointed(words[contact + layout[GEOMETRY]]) + layout[POINT])
+    return (velocity_at(memory, words, layout, bodies, first, point),
+            velocity_at(memory, words, layout, bodies, second, point))
+
+
+@compiled
+def touching(memory, words, layout, contacts, least):
+    """Numbers (l,) of those of the contacts (k,), at their places, that are in contact now and as stiff as `least`
+    (N/m)."""
+    found, count = np.empty(len(contacts), np.int64), 0
+    for k, contact in enumerate(contacts):
+        if (is_real(words, layout, contact)
+                and memory[pointed(words[contact + layout[CONSTANTS]]) + layout[STIFFNESS]] >= least):
+            found[count] = k
+            count += 1
+    return found[:count].copy()
+
+
+@compiled
+def shear_forces(memory, words, layout, contacts, forces, real):
+    """Set the shear forces (k, 3) N of the contacts (k,), 0 for those that are not in contact now, and which are."""
+    for k, contact in enumerate(contacts):
+        real[k] = is_real(words, layout, contact)
+        if real[k]:
+            x, y, z = read(memory, pointed(words[contact + layout[CONSTANTS]]) + layout[OF_SHEAR])
+            forces[k, 0], forces[k, 1], forces[k, 2] = x, y, z
+        else:
+            forces[k] = 0.0
+
+
+@compiled
+def tool_slip(memory, words, layout, bodies, contact, before, dt):
+    """Irreversible slip (m) in this step of a contact that slides. before: (3,) N, its shear force before the step.
+
+    That is what its spring does not take up, (|trial force| - |Ft|) / ks, less the excess of YADE's slip over that of
+    the surfaces at the contact point, over which forces work: YADE rotates spheres about their full radii and scales
+    translations to match (kernels.stability).
+    """
+    phys = pointed(words[contact + layout[CONSTANTS]])
+    geom = pointed(words[contact + layout[GEOMETRY]])
+    ks, force = memory[phys + layout[SHEAR_STIFFNESS]], read(memory, phys + layout[OF_SHEAR])
+    increment, normal = read(memory, geom + layout[MOVED]), read(memory, geom + layout[DIRECTION])
+    x, y, z = -ks * increment[0], -ks * increment[1], -ks * increment[2]
+    stored = before[0], before[1], before[2]
+    size = norm(stored)
+    if size > 0.0:
+        # YADE rotates the spring with the contact.
+        along = dot(stored, normal)
+        rotated = less(stored, (normal[0] * along, normal[1] * along, normal[2] * along))
+        scale = size / norm(rotated)
+        x, y, z = x + rotated[0] * scale, y + rotated[1] * scale, z + rotated[2] * scale
+    after, length = norm(force), norm(increment)
+    slip = max(norm((x, y, z)) - after, 0.0) / ks
+    if not (slip > 0.0 and after * length > 0.0):
+        return slip
+    first, second = velocities(memory, words, layout, bodies, contact)
+    way = less(second, first)
+    excess = dot(force, less((way[0] * dt, way[1] * dt, way[2] * dt), increment)) / after
+    # Part of the step's displacement may have gone into the spring.
+    return slip - excess * min(slip / length, 1.0)
+
+
+@compiled
+def sample_tool(memory, words, layout, bodies, numbers, contacts, pieces, rocks, tool_first, before, gains, elapsed, dt,
+                presses, exponents, tool_work, rock_work, slid, impulse):
+    """Add what contacts of the tool `numbers` (l,) do in a step that stands for `elapsed` (s).
+
+    contacts, pieces, rocks, tool_first, before: (k,) places, pieces of the tool, rock particles, whether the tool's
+    body is the first, and (k, 3) shear forces (N) before the step; gains: (l, 3) m/s by which the rock particles will
+    be faster after it; dt: s, of one step. tool_work (m,), rock_work (n,) J, slid (e, m) sums of force^exponent times
+    slip with the force that `presses` (e,) or of friction, `exponents` (e,), and impulse (3,) N s on the tool are added
+    to. -> J: friction, work of the tool, of dashpots, and friction as YADE counts it, slip times the force after it.
+
+    Friction is the slip times the mean of the forces before and after the step, so that the work of the leapfrog
+    integrator and the energy of the springs balance exactly. The tool's work is F v dt with the velocity of the tool
+    at the contact point.
+    """
+    friction, done, dashpots, in_yade = 0.0, 0.0, 0.0, 0.0
+    for row, k in enumerate(numbers):
+        contact = contacts[k]
+        phys = pointed(words[contact + layout[CONSTANTS]])
+        normal, shear = read(memory, phys + layout[OF_NORMAL]), read(memory, phys + layout[OF_SHEAR])
+        # YADE puts N + S on the second body and its opposite on the first.
+        sign = -elapsed if tool_first[k] else elapsed
+        push = (normal[0] + shear[0]) * sign, (normal[1] + shear[1]) * sign, (normal[2] + shear[2]) * sign
+        for along in range(3):
+            impulse[along] += push[along]
+        of_first, of_second = velocities(memory, words, layout, bodies, contact)
+        done -= dot(push, of_first if tool_first[k] else of_second)
+        cn = memory[phys + layout[DAMPING]]
+        if cn > 0.0:
+            dashpot = read(memory, phys + layout[OF_DASHPOT])
+            gain = dot(dashpot, (gains[row, 0], gains[row, 1], gains[row, 2])) * (0.5 if tool_first[k] else -0.5)
+            dashpots += (dot(dashpot, dashpot) / cn + gain) * elapsed
+        after = norm(shear)
+        if not (after > 0.0 and after >= SLIDING * memory[phys + layout[FRICTION]] * norm(normal)):
+            continue
+        slip = tool_slip(memory, words, layout, bodies, contact, before[k], dt) * elapsed / dt
+        force = 0.5 * (norm((before[k, 0], before[k, 1], before[k, 2])) + after)
+        work = force * slip
+        friction += work
+        in_yade += slip * after
+        tool_work[pieces[k]] += work
+        rock_work[rocks[k]] += work
+        # A dashpot may pull; only compression presses the surfaces together.
+        geom = pointed(words[contact + layout[GEOMETRY]])
+        pressing = max(dot(normal, read(memory, geom + layout[DIRECTION])), 0.0)
+        for need, exponent in enumerate(exponents):
+            slid[need, pieces[k]] += (pressing if presses[need] else force)**exponent * slip
+    return friction, done, dashpots, in_yade
+
+
+@compiled
+def between_rock(words, layout, contacts, particles, others):
+    """Of contacts (k,), those between bodies 0..particles-1 whose constants are of none of the classes `others`: places
+    (l,), bodies (l, 2)."""
+    places, pairs, count = np.empty(len(contacts), np.int64), np.empty((len(contacts), 2), np.int64), 0
+    for contact in contacts:
+        first, second = ends_of(words, layout, contact)
+        if max(first, second) >= particles:
+            continue
+        phys, other = words[contact + layout[CONSTANTS]], False
+        if phys != 0:
+            kind = words[pointed(phys)]
+            for one in others:
+                other = other or kind == one
+        if not other:
+            places[count], pairs[count, 0], pairs[count, 1] = contact, first, second
+            count += 1
+    return places[:count].copy(), pairs[:count].copy()
+
+
+@compiled
+def sliding(memory, words, layout, bodies, contacts, friction):
+    """Of contacts (k,) those that slide now between bodies that are there: numbers (l,), bodies (l, 2).
+
+    friction: (k,), of each, nan for YADE's own, which it is set to.
+    """
+    numbers, pairs, count = np.empty(len(contacts), np.int64), np.empty((len(contacts), 2), np.int64), 0
+    for k, contact in enumerate(contacts):
+        if not is_real(words, layout, contact):
+            continue
+        phys = pointed(words[contact + layout[CONSTANTS]])
+        if math.isnan(friction[k]):
+            friction[k] = memory[phys + layout[FRICTION]]
+        limit = friction[k] * norm(read(memory, phys + layout[OF_NORMAL]))
+        if not norm(read(memory, phys + layout[OF_SHEAR])) > SLIDING * limit > 0.0:
+            continue
+        first, second = ends_of(words, layout, contact)
+        if is_there(words, bodies, first) and is_there(words, bodies, second):
+            numbers[count], pairs[count, 0], pairs[count, 1] = k, first, second
+            count += 1
+    return numbers[:count].copy(), pairs[:count].copy()
+
+
+@compiled
+def friction_work(memory, words, layout, bodies, contacts, friction, pairs, faster, turning, radii, elapsed, work):
+    """Add the friction work (J) of sliding contacts (l,) of particles in `elapsed` (s) to `work` (n,). -> J, of all.
+
+    friction, pairs: (l,), (l, 2) bodies; faster, turning: (l, 2, 3) m/s and rad/s by which they will be faster after
+    the step; radii: (n,) m. The work is |Ft| times the irreversible slip [Rojek 2014, eq. 36], which is the slip less
+    what a rising limit mu |Fn| lets the spring take up, over the mean of the velocities before and after the step.
+    """
+    total = 0.0
+    for k, contact in enumerate(contacts):
+        first, second = pairs[k]
+        phys = pointed(words[contact + layout[CONSTANTS]])
+        normal = read(memory, pointed(words[contact + layout[GEOMETRY]]) + layout[DIRECTION])
+        shear = read(memory, phys + layout[OF_SHEAR])
+        mu, tangential = friction[k], norm(shear)
+        of_first, of_second = velocities(memory, words, layout, bodies, contact)
+        turn = (turning[k, 0, 0] * radii[first] + turning[k, 1, 0] * radii[second],
+                turning[k, 0, 1] * radii[first] + turning[k, 1, 1] * radii[second],
+                turning[k, 0, 2] * radii[first] + turning[k, 1, 2] * radii[second])
+        rolled = cross(turn, normal)
+        velocity = (of_second[0] - of_first[0] + 0.5 * (faster[k, 1, 0] - faster[k, 0, 0] - rolled[0]),
+                    of_second[1] - of_first[1] + 0.5 * (faster[k, 1, 1] - faster[k, 0, 1] - rolled[1]),
+                    of_second[2] - of_first[2] + 0.5 * (faster[k, 1, 2] - faster[k, 0, 2] - rolled[2]))
+        slip = -dot(shear, velocity) / tangential
+        taken_up = -mu * memory[phys + layout[STIFFNESS]] / memory[phys + layout[SHEAR_STIFFNESS]] * dot(
+            normal, velocity)
+        done = tangential * max(slip - taken_up, 0.0) * elapsed
+        total += done
+        work[first] += 0.5 * done
+        work[second] += 0.5 * done
+    return total
