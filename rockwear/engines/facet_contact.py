@@ -58,7 +58,7 @@ class FacetContact(ToolContact):
     def __init__(self, *, neighbours, needs=(WORK,), **common):
         super().__init__(needs=(*needs, SLIP), **common)
         self.neighbours = neighbours
-        self.in_yade_balance = self.reshaping_energy = 0.0
+        self.reshaping_energy = 0.0
         self.notches, self.reshaped = [], False
 
     def connect(self):
@@ -75,10 +75,10 @@ class FacetContact(ToolContact):
     def act(self):
         if self.collider.numAction != self.collided:
             self.find_contacts()
-        stored = self._energy(of=np.flatnonzero(self.real)) if self.reshaped else 0.0
+        stored = self._energy(of=np.flatnonzero(self.before[:, 3])) if self.reshaped else 0.0
         self.notches = []
         successions = [pair for rock, group in self.shared for pair in self._select(rock, group)]
-        self.in_yade_balance += self._sample_all()
+        self._visit(self.elapsed(), sampled=True, stored=False)
         acting = {pieces(new): old for old, new in successions}
         for one, other in self._pairs():
             self._join(one, other, acting.get(pieces(one), one))
@@ -87,7 +87,12 @@ class FacetContact(ToolContact):
         if self.reshaped:
             self.reshaping_energy += self._energy() - stored
         self.reshaped = False
-        self._store_shear()
+        self._visit(0.0, sampled=False, stored=True)
+
+    @property
+    def in_yade_balance(self):
+        """J that YADE's sum of plastic dissipation has of the tool."""
+        return float(self.totals[compiled.YADE_WORK])
 
     def shape_has_changed(self):
         """The contacts of the next step are those with another shape."""
@@ -216,9 +221,9 @@ class FacetContact(ToolContact):
         force = (outwards(one) * (depth * parts[0]) + outwards(other) * (depth * parts[1])
                  - outwards(acting) * interaction.geom.penetrationDepth) * interaction.phys.kn
         O.forces.addF(rock, force)
-        self.impulse -= np.array(force) * O.dt
+        self.totals[compiled.IMPULSE:] -= np.array(force) * O.dt
         of_first, of_second = compiled.velocities(MEMORY, WORDS, self.layout, self.bodies, place(interaction))
-        self.work_done += force.dot(Vector3(*(of_first if tool_first else of_second))) * O.dt
+        self.totals[compiled.TOOL_WORK] += force.dot(Vector3(*(of_first if tool_first else of_second))) * O.dt
 
     def _joined_energy(self, pair, depth_of):
         """J that the joined depth of two contacts holds more than the active one of them."""
@@ -236,7 +241,8 @@ class FacetContact(ToolContact):
 
     def restore(self, state):
         super().restore(state)
-        self.in_yade_balance, self.reshaping_energy = float(state["in_yade_balance"]), float(state["reshaping_energy"])
+        self.totals[compiled.YADE_WORK] = state["in_yade_balance"]
+        self.reshaping_energy = float(state["reshaping_energy"])
         self.reshaped = bool(state["reshaped"])
         self.notches = [tuple(row) for row in state["notches"].tolist()]
 

@@ -17,7 +17,7 @@ import numpy as np
 from yade import Body, FrictViscoPhys, Interaction, O, ScGeom, State, config
 
 from rockwear.kernels.checks import require
-from rockwear.kernels.compiled import CONTACT
+from rockwear.kernels import compiled
 
 INSTANCE, HOLDER = 40, 16
 """Bytes from the beginning of an instance to its pointer to the holder (behind count, type, size, dictionary and weak
@@ -232,14 +232,14 @@ def contact_columns(*names):
 
 @cache
 def kernel_layout():
-    """(17,) what kernels.compiled.CONTACT says, of contacts and of bodies. Raises ParameterError."""
+    """(17,) what compiled.CONTACT says, of contacts and of bodies. Raises ParameterError."""
     bodies = [Body() for _ in range(TRIED)]
     states = [body.state for body in bodies]
     found = {**contact_layout(), "state": offset("state", bodies, [SIZE * (place(state) + 1) for state in states]),
              **{name: place(getattr(states[0], of)) - place(states[0])
                 for name, of in (("velocity", "vel"), ("spin", "angVel"))}}
     found["position"] = found["velocity"] + _position()
-    return np.array([found[name] for name in CONTACT])
+    return np.array([found[name] for name in compiled.CONTACT])
 
 
 def list_of_bodies():
@@ -253,6 +253,46 @@ def _word_of_bodies():
     """Which word of the container of bodies begins the list of them."""
     bodies = map(O.bodies.__getitem__, range(len(O.bodies)))
     return _word_of_list("list of bodies", O.bodies, [0 if one is None else SIZE * (place(one) + 1) for one in bodies])
+
+
+FORCES, TORQUES = 32, 3
+"""Words of YADE's scene among which its forces are looked for, and from these on to torques."""
+_words = []
+"""Which they are, once they are found."""
+
+
+def lists_of_forces():
+    """Indices in MEMORY of the pointers to the lists of the scene's forces and torques (compiled.exerted); zeros as
+    long as nothing exerts any force. Raises ParameterError."""
+    scene = place(O.forces)
+    if not _words:
+        _words.extend(_words_of_forces(scene))
+    return tuple(scene + word for word in _words) if _words else (0, 0)
+
+
+def _words_of_forces(scene):
+    """[which word of the scene is that of forces, of torques]: they have for all bodies what Python has."""
+    size, bodies = 3 * SIZE * O.numThreads, range(len(O.bodies))
+    for word in range(FORCES):
+        begin, end, _ = _peek(SIZE * (scene + 1 + word), 3, np.int64).tolist()
+        if end - begin != size or not all(map(_is_list, _peek(begin, size // SIZE, np.int64).reshape(-1, 3).tolist())):
+            continue
+        # Beyond the end of the list of permanent ones Python has any numbers.
+        last = int(np.subtract(*WORDS[scene + word + compiled.PERMANENT:][1::-1])) // (3 * SIZE) or len(bodies)
+        exerted = [[tuple(given(body)) for body in bodies[:last]] for given in (O.forces.f, O.forces.t)]
+        if not np.any(exerted[0]):
+            return []
+        if all(np.array_equal([compiled.exerted(MEMORY, WORDS, scene + word + behind, body) for body in bodies[:last]],
+                              values) for behind, values in zip((0, TORQUES), exerted)):
+            return [word, word + TORQUES]
+    require_memory(False, "forces")
+    return None
+
+
+def _is_list(ends):
+    """Whether these begin, end and end of the room, bytes, are those of a list of vectors."""
+    begin, end, _ = ends
+    return begin % SIZE == 0 and 0 < begin < end and (end - begin) % (3 * SIZE) == 0 and len(_peek(begin, 1)) == 1
 
 
 def in_contact(places):

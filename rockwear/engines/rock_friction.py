@@ -42,6 +42,7 @@ class RockContacts(Engine):
 
     def connect(self):
         self.layout, self.bodies = kernel_layout(), list_of_bodies()
+        self.motion.connect()
         self.held = {}
         self.find_contacts()
 
@@ -122,14 +123,11 @@ class RockFriction(RockContacts):
         contacts = np.concatenate([broken, self.places]).astype(np.int64) if broken else self.places
         friction = np.full(len(contacts), np.nan)
         friction[:len(broken)] = self.bonds.law.mu
-        where = MEMORY, WORDS, self.layout, self.bodies
-        numbers, pairs = compiled.sliding(*where, contacts, friction)
-        if len(numbers):
-            ends = pairs.ravel().tolist()
-            faster, turning = (change(ends).reshape(-1, 2, 3)
-                               for change in (self.motion.by_forces, self.motion.turning))
-            self.total += compiled.friction_work(*where, contacts[numbers], friction[numbers], pairs, faster, turning,
-                                                 self.motion.radii, elapsed, self.work)
+        if len(contacts):
+            motion = self.motion
+            self.total += compiled.rub(
+                MEMORY, WORDS, self.layout, self.bodies, *motion.lists, contacts, friction, motion.per_mass,
+                motion.per_inertia, motion.radii, elapsed, O.dt, self.work)
 
     def take_work(self):
         """(n,) friction work (J) of each particle since the last call."""

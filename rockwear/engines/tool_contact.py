@@ -44,24 +44,26 @@ class ToolContact(Engine):
         self.tool_work = np.zeros(tool.count)
         self.rock_work = np.zeros(len(motion.per_mass))
         needs = list(dict.fromkeys((WORK, *needs)))
-        self.presses = np.array([kind == NORMAL for kind, _ in needs])
-        self.exponents = np.array([exponent for _, exponent in needs], float)
+        self.needs = np.array([[kind == NORMAL, exponent] for kind, exponent in needs], float).T.copy()
+        self.totals = np.zeros(7)
         self._begin_slid(needs)
-        self.touching, self.possible = {}, []
-        self.before, self.real = np.zeros((0, 3)), np.zeros(0, bool)
-        """Shear forces (N) of `possible` before this step, and which were in contact then."""
-        self.friction = self.work_done = self.dashpot_dissipated = 0.0
-        self.impulse = np.zeros(3)
+        self._begin_contacts()
 
     def _begin_slid(self, needs):
         self.sums = np.zeros((len(needs), self.tool.count))
         self.slid = dict(zip(needs, self.sums))
 
+    def _begin_contacts(self):
+        self.possible, self.seconds, self.touched = [], np.zeros(0), {}
+        """Contacts that may be, the contact time (s) of each, and that of pairs that are not among them."""
+        self.before = np.zeros((0, 4))
+        """Shear forces (N) of `possible` before this step, and 1 where they were in contact then."""
+
     def connect(self):
         self.layout, self.bodies = kernel_layout(), list_of_bodies()
-        self.possible = []
+        self.motion.connect()
         self.find_contacts()
-        self._store_shear()
+        self._visit(0.0, sampled=False, stored=True)
 
     def find_contacts(self):
         """Find the contacts that the collider holds possible now."""
@@ -79,51 +81,50 @@ class ToolContact(Engine):
         self._keep([contact for contact in self.possible if contact.piece in self.tool.body_of])
 
     def _keep(self, contacts):
-        row = {contact[1:3]: k for k, contact in enumerate(self.possible)}
-        before, real = self.before, self.real
-        self.before, self.real = np.zeros((len(contacts), 3)), np.zeros(len(contacts), bool)
-        for k, contact in enumerate(contacts):
-            if contact[1:3] in row:
-                known = row[contact[1:3]]
-                self.before[k], self.real[k] = before[known], real[known]
+        rows, seconds = {contact[1:3]: row for contact, row in zip(self.possible, self.before)}, self.touching()
+        pairs = [contact[1:3] for contact in contacts]
+        self.before = np.array([rows.get(pair, np.zeros(4)) for pair in pairs]).reshape(-1, 4)
+        self.seconds, self.touched = np.array([seconds.pop(pair, 0.0) for pair in pairs]), seconds
         # What Python holds keeps its place in memory.
         self.possible = contacts
-        self.places, self.pieces, self.rocks = (np.array(values, int) for values in (
-            [place(contact.interaction) for contact in contacts], [contact.piece for contact in contacts],
-            [contact.rock for contact in contacts]))
-        self.first = np.array([contact.tool_first for contact in contacts], bool)
+        self.places = np.array([place(contact.interaction) for contact in contacts], np.int64)
+        self.parts = np.array([contact[1:] for contact in contacts], np.int64).reshape(-1, 3).T.copy()
+
+    def touching(self):
+        """{(piece, rock): s in contact since `take_heating`}."""
+        there = {contact[1:3]: time for contact, time in zip(self.possible, self.seconds.tolist()) if time > 0.0}
+        return {**self.touched, **there}
 
     def act(self):
         if self.collider.numAction != self.collided:
             self.find_contacts()
         sampled, stored = O.iter % self.sampling_period == 0, (O.iter + 1) % self.sampling_period == 0
-        if sampled:
-            self._sample_all()
-        if stored:
-            self._store_shear()
+        if sampled or stored:
+            self._visit(self.elapsed() if sampled else 0.0, sampled, stored)
 
-    def _sample_all(self):
-        """Sample those of `possible` that are in contact now. -> J, friction as YADE counts it."""
-        elapsed = self.elapsed()
-        numbers = compiled.touching(MEMORY, WORDS, self.layout, self.places, self.least_stiffness)
-        if not len(numbers):
-            return 0.0
-        rocks = []
-        for k in numbers.tolist():
-            _, piece, rock, _ = self.possible[k]
-            self.touching[piece, rock] = self.touching.get((piece, rock), 0.0) + elapsed
-            rocks.append(rock)
-        friction, done, dashpots, in_yade = compiled.sample_tool(
-            MEMORY, WORDS, self.layout, self.bodies, numbers, self.places, self.pieces, self.rocks, self.first,
-            self.before, self.motion.of(rocks), elapsed, O.dt, self.presses, self.exponents, self.tool_work,
-            self.rock_work, self.sums, self.impulse)
-        self.friction += friction
-        self.work_done += done
-        self.dashpot_dissipated += dashpots
-        return in_yade
+    def _visit(self, elapsed, sampled, stored):
+        """What contacts do in this step, for `elapsed` (s), is sampled, their shear forces are stored."""
+        if len(self.places):
+            motion = self.motion
+            compiled.sample_tool(
+                MEMORY, WORDS, self.layout, self.bodies, motion.lists[0] if sampled else 0, self.places,
+                self.least_stiffness, self.parts, self.needs, self.before, motion.per_mass, motion.gravity, elapsed,
+                O.dt, sampled, stored, self.seconds, self.tool_work, self.rock_work, self.sums, self.totals)
 
-    def _store_shear(self):
-        compiled.shear_forces(MEMORY, WORDS, self.layout, self.places, self.before, self.real)
+    @property
+    def friction(self):
+        """J so far."""
+        return float(self.totals[compiled.FRICTION_WORK])
+
+    @property
+    def work_done(self):
+        """J, of the tool so far."""
+        return float(self.totals[compiled.TOOL_WORK])
+
+    @property
+    def dashpot_dissipated(self):
+        """J so far."""
+        return float(self.totals[compiled.DASHPOT_WORK])
 
     def take_slid(self):
         """{(force, exponent): (m,) sum of F^exponent times slip, N^exponent m} by piece since the last call."""
@@ -139,14 +140,15 @@ class ToolContact(Engine):
     def take_heating(self):
         """Friction work (J) by piece and by rock particle, and contact time (s) by (piece, rock), since the last
         call."""
-        taken = self.tool_work, self.rock_work, self.touching
+        taken = self.tool_work, self.rock_work, self.touching()
         self.tool_work, self.rock_work = np.zeros(self.tool.count), np.zeros(len(self.rock_work))
-        self.touching = {}
+        self.seconds[:], self.touched = 0.0, {}
         return taken
 
     def take_impulse(self):
         """(3,) impulse (N s) on the tool since the last call."""
-        taken, self.impulse = self.impulse, np.zeros(3)
+        taken = self.totals[compiled.IMPULSE:].copy()
+        self.totals[compiled.IMPULSE:] = 0.0
         return taken
 
     def elastic_energy(self):
@@ -154,18 +156,18 @@ class ToolContact(Engine):
         return contact_energy(i for body in self.tool.ids for i in O.interactions.withBody(body))
 
     def state(self):
-        pairs = sorted(self.touching)
-        return {"tool_work": self.tool_work.copy(), "rock_work": self.rock_work.copy(),
-                "slid": self.sums.copy(),
-                "touching": np.array([(i, j, self.touching[i, j]) for i, j in pairs], float).reshape(-1, 3),
-                "friction": self.friction, "work_done": self.work_done,
-                "dashpot_dissipated": self.dashpot_dissipated, "impulse": self.impulse.copy()}
+        touching = sorted(self.touching().items())
+        return {"tool_work": self.tool_work.copy(), "rock_work": self.rock_work.copy(), "slid": self.sums.copy(),
+                "touching": np.array([(*pair, time) for pair, time in touching], float).reshape(-1, 3),
+                "friction": self.friction, "work_done": self.work_done, "dashpot_dissipated": self.dashpot_dissipated,
+                "impulse": self.totals[compiled.IMPULSE:].copy()}
 
     def restore(self, state):
-        for name in ("tool_work", "rock_work", "impulse"):
-            setattr(self, name, state[name].copy())
+        self.tool_work, self.rock_work = state["tool_work"].copy(), state["rock_work"].copy()
+        self.totals[[compiled.FRICTION_WORK, compiled.TOOL_WORK, compiled.DASHPOT_WORK]] = (
+            state["friction"], state["work_done"], state["dashpot_dissipated"])
+        self.totals[compiled.IMPULSE:] = state["impulse"]
         self._begin_slid(self.slid)
         self.sums[:] = state["slid"]
-        self.touching = {(int(i), int(j)): t for i, j, t in state["touching"].tolist()}
-        for name in ("friction", "work_done", "dashpot_dissipated"):
-            setattr(self, name, float(state[name]))
+        self._begin_contacts()
+        self.touched = {(int(i), int(j)): t for i, j, t in state["touching"].tolist()}

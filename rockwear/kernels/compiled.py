@@ -312,6 +312,10 @@ a body, the pointer to its state; behind the state, its motion (m/s, rad/s) and 
 (GEOMETRY, CONSTANTS, BODIES, OF_NORMAL, OF_SHEAR, OF_DASHPOT, FRICTION, STIFFNESS, SHEAR_STIFFNESS, DAMPING, DIRECTION,
  MOVED, POINT, STATE, VELOCITY, SPIN, POSITION) = range(17)
 """Where in a layout it does."""
+FRICTION_WORK, TOOL_WORK, DASHPOT_WORK, YADE_WORK, IMPULSE = range(5)
+"""Places of what `sample_tool` adds up, of the impulse the first."""
+PERMANENT = 18
+"""Words from the lists of forces, or torques, that YADE's threads add to that of the permanent ones."""
 SLIDING = 1 - 1e-9
 """|Ft| / mu |Fn| from which a contact slid in this step: YADE's laws return it to Coulomb's limit to round-off. (A
 looser test counts contacts that oscillate near the limit as sliding, and their work adds up.)"""
@@ -380,28 +384,28 @@ def velocities(memory, words, layout, bodies, contact):
 
 
 @compiled
-def touching(memory, words, layout, contacts, least):
-    """Numbers (l,) of those of the contacts (k,), at their places, that are in contact now and as stiff as `least`
-    (N/m)."""
-    found, count = np.empty(len(contacts), np.int64), 0
-    for k, contact in enumerate(contacts):
-        if (is_real(words, layout, contact)
-                and memory[pointed(words[contact + layout[CONSTANTS]]) + layout[STIFFNESS]] >= least):
-            found[count] = k
-            count += 1
-    return found[:count].copy()
+def add(a, b, factor):
+    """a + b times a factor, of vectors."""
+    return a[0] + b[0] * factor, a[1] + b[1] * factor, a[2] + b[2] * factor
 
 
 @compiled
-def shear_forces(memory, words, layout, contacts, forces, real):
-    """Set the shear forces (k, 3) N of the contacts (k,), 0 for those that are not in contact now, and which are."""
-    for k, contact in enumerate(contacts):
-        real[k] = is_real(words, layout, contact)
-        if real[k]:
-            x, y, z = read(memory, pointed(words[contact + layout[CONSTANTS]]) + layout[OF_SHEAR])
-            forces[k, 0], forces[k, 1], forces[k, 2] = x, y, z
-        else:
-            forces[k] = 0.0
+def exerted(memory, words, lists, body):
+    """(3,) N or N m on a body in this step so far. lists: place of a pointer to the lists of what each thread of YADE's
+    adds, by body; PERMANENT behind it, of a pointer to the list of what is permanent; 0: there is none."""
+    if lists == 0:
+        return 0.0, 0.0, 0.0
+    one, end = pointed(words[lists]), pointed(words[lists + 1])
+    x, y, z = 0.0, 0.0, 0.0
+    while one < end:
+        begin = pointed(words[one])
+        if begin + 3 * body < pointed(words[one + 1]):
+            x, y, z = add((x, y, z), read(memory, begin + 3 * body), 1.0)
+        one += 3
+    begin = pointed(words[lists + PERMANENT])
+    if begin + 3 * body < pointed(words[lists + PERMANENT + 1]):
+        x, y, z = add((x, y, z), read(memory, begin + 3 * body), 1.0)
+    return x, y, z
 
 
 @compiled
@@ -437,53 +441,66 @@ def tool_slip(memory, words, layout, bodies, contact, before, dt):
 
 
 @compiled
-def sample_tool(memory, words, layout, bodies, numbers, contacts, pieces, rocks, tool_first, before, gains, elapsed, dt,
-                presses, exponents, tool_work, rock_work, slid, impulse):
-    """Add what contacts of the tool `numbers` (l,) do in a step that stands for `elapsed` (s).
+def sample_tool(memory, words, layout, bodies, forces, contacts, least, parts, needs, before, per_mass, gravity,
+                elapsed, dt, sampled, stored, seconds, tool_work, rock_work, slid, totals):
+    """What contacts of the tool (k,) that are in contact now, and as stiff as `least` (N/m), do in this step.
 
-    contacts, pieces, rocks, tool_first, before: (k,) places, pieces of the tool, rock particles, whether the tool's
-    body is the first, and (k, 3) shear forces (N) before the step; gains: (l, 3) m/s by which the rock particles will
-    be faster after it; dt: s, of one step. tool_work (m,), rock_work (n,) J, slid (e, m) sums of force^exponent times
-    slip with the force that `presses` (e,) or of friction, `exponents` (e,), and impulse (3,) N s on the tool are added
-    to. -> J: friction, work of the tool, of dashpots, and friction as YADE counts it, slip times the force after it.
+    forces: see `exerted`; contacts: places; parts: (3, k) piece of the tool, rock particle, and 1 where the tool's body
+    is the first, else 0; needs: (2, e) sums that wear needs, 1 for the force that presses or 0 for friction, and its
+    exponent; before: (k, 4) shear force (N) before the step, and 1 where there was contact; per_mass: (n,) 1/kg of
+    rock, gravity: (3,) m/s2; dt: s.
 
-    Friction is the slip times the mean of the forces before and after the step, so that the work of the leapfrog
-    integrator and the energy of the springs balance exactly. The tool's work is F v dt with the velocity of the tool
-    at the contact point.
+    Where `sampled`, these are added to for `elapsed` (s), for which this step stands: seconds (k,) in contact;
+    tool_work (m,), rock_work (n,) J of friction; slid (e, m), force^exponent times slip; totals (7,): friction, work of
+    the tool, of dashpots, friction as YADE counts it, slip times the force after it (J), and impulse on the tool (N s).
+    Where `stored`, `before` is that of the next step. Friction is the slip times the mean of the forces before and
+    after the step, so that the work of the leapfrog integrator and the energy of the springs balance exactly. The
+    tool's work is F v dt with the velocity of the tool at the contact point.
     """
-    friction, done, dashpots, in_yade = 0.0, 0.0, 0.0, 0.0
-    for row, k in enumerate(numbers):
-        contact = contacts[k]
-        phys = pointed(words[contact + layout[CONSTANTS]])
-        normal, shear = read(memory, phys + layout[OF_NORMAL]), read(memory, phys + layout[OF_SHEAR])
-        # YADE puts N + S on the second body and its opposite on the first.
-        sign = -elapsed if tool_first[k] else elapsed
-        push = (normal[0] + shear[0]) * sign, (normal[1] + shear[1]) * sign, (normal[2] + shear[2]) * sign
-        for along in range(3):
-            impulse[along] += push[along]
-        of_first, of_second = velocities(memory, words, layout, bodies, contact)
-        done -= dot(push, of_first if tool_first[k] else of_second)
-        cn = memory[phys + layout[DAMPING]]
-        if cn > 0.0:
-            dashpot = read(memory, phys + layout[OF_DASHPOT])
-            gain = dot(dashpot, (gains[row, 0], gains[row, 1], gains[row, 2])) * (0.5 if tool_first[k] else -0.5)
-            dashpots += (dot(dashpot, dashpot) / cn + gain) * elapsed
-        after = norm(shear)
-        if not (after > 0.0 and after >= SLIDING * memory[phys + layout[FRICTION]] * norm(normal)):
+    for k, contact in enumerate(contacts):
+        if not is_real(words, layout, contact):
+            if stored:
+                before[k] = 0.0
             continue
-        slip = tool_slip(memory, words, layout, bodies, contact, before[k], dt) * elapsed / dt
-        force = 0.5 * (norm((before[k, 0], before[k, 1], before[k, 2])) + after)
-        work = force * slip
-        friction += work
-        in_yade += slip * after
-        tool_work[pieces[k]] += work
-        rock_work[rocks[k]] += work
-        # A dashpot may pull; only compression presses the surfaces together.
-        geom = pointed(words[contact + layout[GEOMETRY]])
-        pressing = max(dot(normal, read(memory, geom + layout[DIRECTION])), 0.0)
-        for need, exponent in enumerate(exponents):
-            slid[need, pieces[k]] += (pressing if presses[need] else force)**exponent * slip
-    return friction, done, dashpots, in_yade
+        phys = pointed(words[contact + layout[CONSTANTS]])
+        shear = read(memory, phys + layout[OF_SHEAR])
+        if sampled and memory[phys + layout[STIFFNESS]] >= least:
+            piece, rock, tool_first = parts[0, k], parts[1, k], parts[2, k] == 1
+            normal = read(memory, phys + layout[OF_NORMAL])
+            seconds[k] += elapsed
+            # YADE puts N + S on the second body and its opposite on the first.
+            sign = -elapsed if tool_first else elapsed
+            push = (normal[0] + shear[0]) * sign, (normal[1] + shear[1]) * sign, (normal[2] + shear[2]) * sign
+            for along in range(3):
+                totals[IMPULSE + along] += push[along]
+            of_first, of_second = velocities(memory, words, layout, bodies, contact)
+            totals[TOOL_WORK] -= dot(push, of_first if tool_first else of_second)
+            cn = memory[phys + layout[DAMPING]]
+            if cn > 0.0:
+                dashpot = read(memory, phys + layout[OF_DASHPOT])
+                force = exerted(memory, words, forces, rock)
+                faster = per_mass[rock] * dt
+                faster = force[0] * faster, force[1] * faster, force[2] * faster
+                if per_mass[rock] > 0.0:
+                    faster = add(faster, gravity, dt)
+                gain = dot(dashpot, faster) * (0.5 if tool_first else -0.5)
+                totals[DASHPOT_WORK] += (dot(dashpot, dashpot) / cn + gain) * elapsed
+            after = norm(shear)
+            if after > 0.0 and after >= SLIDING * memory[phys + layout[FRICTION]] * norm(normal):
+                slip = tool_slip(memory, words, layout, bodies, contact, before[k], dt) * elapsed / dt
+                mean = 0.5 * (norm((before[k, 0], before[k, 1], before[k, 2])) + after)
+                work = mean * slip
+                totals[FRICTION_WORK] += work
+                totals[YADE_WORK] += slip * after
+                tool_work[piece] += work
+                rock_work[rock] += work
+                # A dashpot may pull; only compression presses the surfaces together.
+                geom = pointed(words[contact + layout[GEOMETRY]])
+                pressing = max(dot(normal, read(memory, geom + layout[DIRECTION])), 0.0)
+                for need in range(needs.shape[1]):
+                    slid[need, piece] += (pressing if needs[0, need] == 1.0 else mean)**needs[1, need] * slip
+        if stored:
+            before[k, 0], before[k, 1], before[k, 2], before[k, 3] = shear[0], shear[1], shear[2], 1.0
 
 
 @compiled
@@ -507,51 +524,35 @@ def between_rock(words, layout, contacts, particles, others):
 
 
 @compiled
-def sliding(memory, words, layout, bodies, contacts, friction):
-    """Of contacts (k,) those that slide now between bodies that are there: numbers (l,), bodies (l, 2).
+def rub(memory, words, layout, bodies, forces, torques, contacts, friction, per_mass, per_inertia, radii, elapsed, dt,
+        work):
+    """Add the friction work (J) of those contacts (k,) of particles that slide now to `work` (n,). -> J, of all.
 
-    friction: (k,), of each, nan for YADE's own, which it is set to.
+    forces, torques: see `exerted`; contacts: places; friction: (k,), nan where YADE has it; per_mass, per_inertia,
+    radii: (n,) 1/kg, 1/(kg m2), m; elapsed: s, for which this step stands, of dt (s). The work is |Ft| times the
+    irreversible slip [Rojek 2014, eq. 36], which is the slip less what a rising limit mu |Fn| lets the spring take up.
+    The velocity is the mean of those before and after the step.
     """
-    numbers, pairs, count = np.empty(len(contacts), np.int64), np.empty((len(contacts), 2), np.int64), 0
+    total = 0.0
     for k, contact in enumerate(contacts):
         if not is_real(words, layout, contact):
             continue
         phys = pointed(words[contact + layout[CONSTANTS]])
-        if math.isnan(friction[k]):
-            friction[k] = memory[phys + layout[FRICTION]]
-        limit = friction[k] * norm(read(memory, phys + layout[OF_NORMAL]))
-        if not norm(read(memory, phys + layout[OF_SHEAR])) > SLIDING * limit > 0.0:
-            continue
+        mu, shear = friction[k], read(memory, phys + layout[OF_SHEAR])
+        if math.isnan(mu):
+            mu = memory[phys + layout[FRICTION]]
+        limit, tangential = mu * norm(read(memory, phys + layout[OF_NORMAL])), norm(shear)
         first, second = ends_of(words, layout, contact)
-        if is_there(words, bodies, first) and is_there(words, bodies, second):
-            numbers[count], pairs[count, 0], pairs[count, 1] = k, first, second
-            count += 1
-    return numbers[:count].copy(), pairs[:count].copy()
-
-
-@compiled
-def friction_work(memory, words, layout, bodies, contacts, friction, pairs, faster, turning, radii, elapsed, work):
-    """Add the friction work (J) of sliding contacts (l,) of particles in `elapsed` (s) to `work` (n,). -> J, of all.
-
-    friction, pairs: (l,), (l, 2) bodies; faster, turning: (l, 2, 3) m/s and rad/s by which they will be faster after
-    the step; radii: (n,) m. The work is |Ft| times the irreversible slip [Rojek 2014, eq. 36], which is the slip less
-    what a rising limit mu |Fn| lets the spring take up, over the mean of the velocities before and after the step.
-    """
-    total = 0.0
-    for k, contact in enumerate(contacts):
-        first, second = pairs[k]
-        phys = pointed(words[contact + layout[CONSTANTS]])
+        if (not tangential > SLIDING * limit > 0.0
+                or not is_there(words, bodies, first) or not is_there(words, bodies, second)):
+            continue
         normal = read(memory, pointed(words[contact + layout[GEOMETRY]]) + layout[DIRECTION])
-        shear = read(memory, phys + layout[OF_SHEAR])
-        mu, tangential = friction[k], norm(shear)
         of_first, of_second = velocities(memory, words, layout, bodies, contact)
-        turn = (turning[k, 0, 0] * radii[first] + turning[k, 1, 0] * radii[second],
-                turning[k, 0, 1] * radii[first] + turning[k, 1, 1] * radii[second],
-                turning[k, 0, 2] * radii[first] + turning[k, 1, 2] * radii[second])
-        rolled = cross(turn, normal)
-        velocity = (of_second[0] - of_first[0] + 0.5 * (faster[k, 1, 0] - faster[k, 0, 0] - rolled[0]),
-                    of_second[1] - of_first[1] + 0.5 * (faster[k, 1, 1] - faster[k, 0, 1] - rolled[1]),
-                    of_second[2] - of_first[2] + 0.5 * (faster[k, 1, 2] - faster[k, 0, 2] - rolled[2]))
+        faster = add((0.0, 0.0, 0.0), exerted(memory, words, forces, second), per_mass[second])
+        faster = add(faster, exerted(memory, words, forces, first), -per_mass[first])
+        turn = add((0.0, 0.0, 0.0), exerted(memory, words, torques, first), radii[first] * per_inertia[first])
+        turn = add(turn, exerted(memory, words, torques, second), radii[second] * per_inertia[second])
+        velocity = add(less(of_second, of_first), less(faster, cross(turn, normal)), 0.5 * dt)
         slip = -dot(shear, velocity) / tangential
         taken_up = -mu * memory[phys + layout[STIFFNESS]] / memory[phys + layout[SHEAR_STIFFNESS]] * dot(
             normal, velocity)
