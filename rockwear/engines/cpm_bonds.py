@@ -129,6 +129,7 @@ class CpmBonds(BondLog):
         """Damage at the last look; whether the bond had slipped or softened by then."""
         self.table = np.array([[getattr(law, name) for law in self.laws] for name in compiled.LAW], float)
         self.slips_freely = self.table[compiled.SLIP_END] == math.inf
+        self.may_be_loose = bool(self.slips_freely.any())
         self.crushes = bool((self.table[compiled.RC] < math.inf).any())
         self.crushed = np.zeros(count)
         """YADE's plastic strain epsNPl of the bonds at the last look, <= 0."""
@@ -239,18 +240,19 @@ class CpmBonds(BondLog):
                 self._separate(n)
         self._find()
         sums = self.dissipated, self.by_slip
-        numbers, omega, work = compiled.look(
+        numbers, self.rising, gone, crushing, softening = compiled.look(
             MEMORY, self.where, self.there, self.table, float(self.law.hardening), self.crushes, self.omega,
             self.active, self.crushed, self.lengths, *sums)
-        self.energy_crushed += work
-        self.energy_released += work
-        self.rising = numbers[:0]
+        self.energy_crushed += crushing
+        self.energy_released += crushing + softening
         if not len(numbers):
             return
         self._begin(numbers[~self.active[numbers]])
-        self._soften(numbers, omega)
-        if self.there is None:
+        if len(gone):
+            self._part(gone)
             numbers = numbers[self.status[numbers] != SEPARATED]
+        if self.may_be_loose:
+            self._forget()
         # Where every step is sampled, the slip of the next one is in its sample.
         spent, work = compiled.relieve(MEMORY, self.where, numbers, self.table, self.between_looks > 1, self.omega,
                                        self.lengths, *sums)
@@ -265,12 +267,9 @@ class CpmBonds(BondLog):
         for n in numbers.tolist():
             self._dissipate(n, _slip_before(self.laws[n], self.contacts[n]))
 
-    def _soften(self, numbers, omega):
-        """What YADE has raised the damage of these bonds to."""
-        self.rising, gone, work = compiled.soften(numbers, omega, self.omega, self.table, self.dissipated)
-        self.energy_released += work
-        if len(gone) or self.slips_freely.any():
-            self._forget()
+    def _part(self, gone):
+        """YADE has broken these bonds."""
+        self._forget()
         for n in gone.tolist():
             interaction, _, phys = self.contacts[n]
             if interaction.isReal:

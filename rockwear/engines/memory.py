@@ -309,14 +309,18 @@ def all_contacts():
 
     What they are read by must be read before YADE's loop goes on, or while Python holds them. Raises ParameterError.
     """
-    begin, end = WORDS[place(O.interactions) + _list_of_contacts():][:2].tolist()
+    begin, end = WORDS[list_of_contacts():][:2].tolist()
     return pointed(WORDS[pointed(begin):pointed(end):2])
 
 
+def list_of_contacts():
+    """Index in MEMORY of the pointer to the list of the scene's contacts, as `list_of_bodies`."""
+    return place(O.interactions) + _word_of_contacts()
+
+
 @cache
-def _list_of_contacts():
-    """Which word of the container of contacts begins the list of them: pairs of pointers, to the contact and to the
-    count of its owners."""
+def _word_of_contacts():
+    """Which word of the container of contacts begins the list of them."""
     return _word_of_list("list of contacts", O.interactions,
                          [SIZE * (place(contact) + 1) for contact in O.interactions.all()])
 

@@ -8,7 +8,8 @@ from yade import CpmPhys, InsertionSortCollider, JCFpmPhys, O
 from rockwear.engines.access import contact_energy, contact_of, yade_engine, yade_friction_law
 from rockwear.engines.base import FORCES, Engine
 from rockwear.engines.bond_log import SEPARATED
-from rockwear.engines.memory import MEMORY, WORDS, all_contacts, class_of, kernel_layout, list_of_bodies, place
+from rockwear.engines.memory import (
+    MEMORY, WORDS, class_of, kernel_layout, list_of_bodies, list_of_contacts, place)
 from rockwear.kernels import compiled
 
 
@@ -19,11 +20,11 @@ def bond_classes():
 
 
 def possible_contacts(particles, others=np.empty(0, int)):
-    """(k,) indices in memory and (k, 2) bodies of the pairs among bodies 0..particles-1 that YADE holds possible; but
-    for those with constants of the classes `others`."""
+    """(k, 3) indices in memory and bodies of the pairs among bodies 0..particles-1 that YADE holds possible; but for
+    those with constants of the classes `others`."""
     if not len(O.interactions):
-        return np.empty(0, np.int64), np.empty((0, 2), np.int64)
-    return compiled.between_rock(WORDS, kernel_layout(), all_contacts(), particles, others)
+        return np.empty((0, 3), np.int64)
+    return compiled.between_rock(WORDS, kernel_layout(), list_of_contacts(), particles, others)
 
 
 class RockContacts(Engine):
@@ -65,9 +66,9 @@ class RockContacts(Engine):
     def _possible(self):
         """Places in memory and bodies [(first, second)] of all pairs of rock particles that are no bonds, ordered by
         the bodies: a loaded scene has them in another order."""
-        places, pairs = possible_contacts(self.particles, bond_classes())
-        order = np.lexsort(pairs.T[::-1])
-        return places[order].tolist(), list(map(tuple, pairs[order].tolist()))
+        found = possible_contacts(self.particles, bond_classes())
+        found = found[np.lexsort((found[:, 2], found[:, 1]))].tolist()
+        return [row[0] for row in found], [(first, second) for _, first, second in found]
 
     def _keep_up(self):
         """Bring `possible` up to date, where the collider has run or bonds have parted since."""

@@ -187,50 +187,46 @@ def harden(memory, where, n, laws, hardening, strains, lengths):
 
 
 @compiled
-def look(memory, where, there, laws, hardening, crushes, omega, active, strains, lengths, dissipated, by_slip):
-    """Which of the bonds `there` (k,) softened or slipped since the last look, and harden those that crushed.
-
-    omega, active: (m,), as of the last look; strains: (m,), YADE's plastic ones, lengths: (m,) m, brought up to date;
-    crushes: whether bonds crush, hardening: their h. -> numbers (l,), their omega now (l,), and the work (J) of
-    crushing, which is added to the sums (m,) J.
-    """
-    numbers, now, count, work = np.empty(len(there), np.int64), np.empty(len(there)), 0, 0.0
-    for n in there:
-        found = memory[where[OMEGA, n]]
-        if (found != omega[n] or not vanishes(read(memory, where[SLIPPED, n]))
-                or active[n] and vanishes(read(memory, where[SHEAR_FORCE, n]))):
-            numbers[count], now[count] = n, found
-            count += 1
-        if crushes and memory[where[CRUSHED, n]] != strains[n]:
-            one = harden(memory, where, n, laws, hardening, strains, lengths)
-            dissipated[n] += one
-            by_slip[n] += one
-            work += one
-    return numbers[:count].copy(), now[:count].copy(), work
+def soften(n, before, now, laws, dissipated):
+    """Add what bond n dissipated as its damage rose to the sum (m,) J. -> J."""
+    Rn, onset, end = laws[RN, n], laws[OPEN_AT_PEAK, n], laws[OPEN_AT_END, n]
+    work = softening_energy(min(now, 1.0), Rn, onset, end) - softening_energy(before, Rn, onset, end)
+    dissipated[n] += work
+    return work
 
 
 @compiled
-def soften(numbers, now, omega, laws, dissipated):
-    """Set the damage omega (m,) of bonds (k,) to what it is `now` (k,), and add to the sum (m,) J what that dissipated.
+def look(memory, where, there, laws, hardening, crushes, omega, active, strains, lengths, dissipated, by_slip):
+    """Which of the bonds `there` (k,) softened or slipped since the last look; harden those that crushed.
 
-    -> numbers of those whose damage rose and that hold on by a coupled cohesion, of those that YADE has broken, J.
+    omega: (m,), as of the last look, strains: (m,), YADE's plastic ones, and lengths: (m,) m, are brought up to date;
+    active: (m,), whether they had slipped or softened by then; crushes: whether bonds crush, hardening: their h. Works
+    are added to the sums (m,) J. -> numbers (l,); of those whose damage rose and that hold on by a coupled cohesion; of
+    those that YADE has broken; and J of crushing and of softening.
     """
-    rising, gone, risen, broken, total = np.empty_like(numbers), np.empty_like(numbers), 0, 0, 0.0
-    for k, n in enumerate(numbers):
-        before, omega[n] = omega[n], now[k]
-        if not now[k] > before:
-            continue
-        Rn, onset, end = laws[RN, n], laws[OPEN_AT_PEAK, n], laws[OPEN_AT_END, n]
-        work = softening_energy(min(now[k], 1.0), Rn, onset, end) - softening_energy(before, Rn, onset, end)
-        dissipated[n] += work
-        total += work
-        if now[k] >= 1.0:
-            gone[broken] = n
-            broken += 1
-        elif laws[COUPLING, n] > 0.0:
-            rising[risen] = n
-            risen += 1
-    return rising[:risen].copy(), gone[:broken].copy(), total
+    numbers, count, crushing, softening = np.empty(len(there), np.int64), 0, 0.0, 0.0
+    rising, risen, gone, broken = np.empty(len(there), np.int64), 0, np.empty(len(there), np.int64), 0
+    for n in there:
+        now = memory[where[OMEGA, n]]
+        if (now != omega[n] or not vanishes(read(memory, where[SLIPPED, n]))
+                or active[n] and vanishes(read(memory, where[SHEAR_FORCE, n]))):
+            numbers[count] = n
+            count += 1
+            if now > omega[n]:
+                softening += soften(n, omega[n], now, laws, dissipated)
+                if now >= 1.0:
+                    gone[broken] = n
+                    broken += 1
+                elif laws[COUPLING, n] > 0.0:
+                    rising[risen] = n
+                    risen += 1
+            omega[n] = now
+        if crushes and memory[where[CRUSHED, n]] != strains[n]:
+            work = harden(memory, where, n, laws, hardening, strains, lengths)
+            dissipated[n] += work
+            by_slip[n] += work
+            crushing += work
+    return numbers[:count].copy(), rising[:risen].copy(), gone[:broken].copy(), crushing, softening
 
 
 @compiled
@@ -409,6 +405,15 @@ def exerted(memory, words, lists, body):
 
 
 @compiled
+def exerted_on(memory, words, lists, numbers):
+    """(k, 3) `exerted` on these bodies (k,)."""
+    found = np.empty((len(numbers), 3))
+    for k, body in enumerate(numbers):
+        found[k, 0], found[k, 1], found[k, 2] = exerted(memory, words, lists, body)
+    return found
+
+
+@compiled
 def tool_slip(memory, words, layout, bodies, contact, before, dt):
     """Irreversible slip (m) in this step of a contact that slides. before: (3,) N, its shear force before the step.
 
@@ -505,22 +510,27 @@ def sample_tool(memory, words, layout, bodies, forces, contacts, least, parts, n
 
 @compiled
 def between_rock(words, layout, contacts, particles, others):
-    """Of contacts (k,), those between bodies 0..particles-1 whose constants are of none of the classes `others`: places
-    (l,), bodies (l, 2)."""
-    places, pairs, count = np.empty(len(contacts), np.int64), np.empty((len(contacts), 2), np.int64), 0
-    for contact in contacts:
+    """Of all contacts those between bodies 0..particles-1 whose constants are of none of the classes `others`: (l, 3)
+    places and bodies. contacts: place of the pointer to the list of them."""
+    found, count = np.empty((64, 3), np.int64), 0
+    one, end = pointed(words[contacts]), pointed(words[contacts + 1])
+    while one < end:
+        contact = pointed(words[one])
+        one += 2
         first, second = ends_of(words, layout, contact)
         if max(first, second) >= particles:
             continue
         phys, other = words[contact + layout[CONSTANTS]], False
         if phys != 0:
             kind = words[pointed(phys)]
-            for one in others:
-                other = other or kind == one
+            for k in range(len(others)):
+                other = other or kind == others[k]
         if not other:
-            places[count], pairs[count, 0], pairs[count, 1] = contact, first, second
+            if count == len(found):
+                found = np.concatenate((found, np.empty_like(found)))
+            found[count, 0], found[count, 1], found[count, 2] = contact, first, second
             count += 1
-    return places[:count].copy(), pairs[:count].copy()
+    return found[:count].copy()
 
 
 @compiled
@@ -561,3 +571,41 @@ def rub(memory, words, layout, bodies, forces, torques, contacts, friction, per_
         work[first] += 0.5 * done
         work[second] += 0.5 * done
     return total
+
+
+# ---- supports of an absorbing boundary
+
+@compiled
+def along_and_across(x, y, normal):
+    """Components of a vector along a normal (2,) and across it."""
+    return x * normal[0] + y * normal[1], y * normal[0] - x * normal[1]
+
+
+@compiled
+def split(vectors, normals):
+    """(k,) components of vectors (k, 2) along the normals (k, 2) and across them."""
+    along, across = np.empty(len(vectors)), np.empty(len(vectors))
+    for k in range(len(vectors)):
+        along[k], across[k] = along_and_across(vectors[k, 0], vectors[k, 1], normals[k])
+    return along, across
+
+
+@compiled
+def dashpot_power(memory, moving, normals, cn, ct):
+    """W that dashpots (k,) take now. moving: (2, k) places of the velocities of their particles; cn, ct: N s/m."""
+    power = 0.0
+    for k in range(len(cn)):
+        along, across = along_and_across(memory[moving[0, k]], memory[moving[1, k]], normals[k])
+        power += cn[k] * along**2 + ct[k] * across**2
+    return power
+
+
+@compiled
+def gone_far(memory, in_plane, places, normals, limits):
+    """Whether a particle (k,) has moved by more than its limit (m) from its place (k, 2) m, along its normal.
+    in_plane: (2, k) places of their positions in memory."""
+    for k in range(len(limits)):
+        x, y = memory[in_plane[0, k]] - places[k, 0], memory[in_plane[1, k]] - places[k, 1]
+        if abs(along_and_across(x, y, normals[k])[0]) > limits[k]:
+            return True
+    return False

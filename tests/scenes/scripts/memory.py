@@ -149,9 +149,11 @@ def velocities_at_contacts():
     real = [i for i in O.interactions if i.isReal]
     where = memory.MEMORY, memory.WORDS, memory.kernel_layout(), memory.list_of_bodies()
     both = [np.array(compiled.velocities(*where, memory.place(i))) for i in real]
+    python = [list(i.geom.incidentVel(i, False)) for i in real]
     O.bodies.erase(8)
-    return {"relative": ([np.round(second - first, 12).tolist() for first, second in both],
-                         [np.round(list(i.geom.incidentVel(i, False)), 12).tolist() for i in real]),
+    scale = np.abs(python).max(axis=1, keepdims=True)
+    return {"relative": (np.round([second - first for first, second in both] / scale, 12).tolist(),
+                         np.round(python / scale, 12).tolist()),
             "there": ([bool(compiled.is_there(where[1], where[3], k)) for k in range(9)], [k != 8 for k in range(9)])}
 
 
