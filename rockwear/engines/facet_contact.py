@@ -203,7 +203,7 @@ class FacetContact(ToolContact):
         """Take the contact's force off the particle in this step, and its friction off YADE's sum of plastic
         dissipation."""
         interaction, _, rock, tool_first = contact
-        slip = compiled.tool_slip(MEMORY, WORDS, self.layout, self.bodies, place(interaction),
+        slip = compiled.tool_slip(MEMORY, WORDS, self.layout, self.body_list, place(interaction),
                                   self.before[self.possible.index(contact)], O.dt)
         counted = slip * interaction.phys.shearForce.norm()
         self.functor.initPlasticDissipation(self.functor.plasticDissipation() - counted)
@@ -222,7 +222,7 @@ class FacetContact(ToolContact):
                  - outwards(acting) * interaction.geom.penetrationDepth) * interaction.phys.kn
         O.forces.addF(rock, force)
         self.totals[compiled.IMPULSE:] -= np.array(force) * O.dt
-        of_first, of_second = compiled.velocities(MEMORY, WORDS, self.layout, self.bodies, place(interaction))
+        of_first, of_second = compiled.velocities(MEMORY, WORDS, self.layout, self.body_list, place(interaction))
         self.totals[compiled.TOOL_WORK] += force.dot(Vector3(*(of_first if tool_first else of_second))) * O.dt
 
     def _joined_energy(self, pair, depth_of):

@@ -42,7 +42,7 @@ class RockContacts(Engine):
         self.particles = len(motion.per_mass)
 
     def connect(self):
-        self.layout, self.bodies = kernel_layout(), list_of_bodies()
+        self.layout, self.body_list = kernel_layout(), list_of_bodies()
         self.motion.connect()
         self.held = {}
         self.find_contacts()
@@ -127,7 +127,7 @@ class RockFriction(RockContacts):
         if len(contacts):
             motion = self.motion
             self.total += compiled.rub(
-                MEMORY, WORDS, self.layout, self.bodies, *motion.lists, contacts, friction, motion.per_mass,
+                MEMORY, WORDS, self.layout, self.body_list, *motion.lists, contacts, friction, motion.per_mass,
                 motion.per_inertia, motion.radii, elapsed, O.dt, self.work)
 
     def take_work(self):

@@ -60,7 +60,7 @@ class ToolContact(Engine):
         """Shear forces (N) of `possible` before this step, and 1 where they were in contact then."""
 
     def connect(self):
-        self.layout, self.bodies = kernel_layout(), list_of_bodies()
+        self.layout, self.body_list = kernel_layout(), list_of_bodies()
         self.motion.connect()
         self.find_contacts()
         self._visit(0.0, sampled=False, stored=True)
@@ -107,7 +107,7 @@ class ToolContact(Engine):
         if len(self.places):
             motion = self.motion
             compiled.sample_tool(
-                MEMORY, WORDS, self.layout, self.bodies, motion.lists[0] if sampled else 0, self.places,
+                MEMORY, WORDS, self.layout, self.body_list, motion.lists[0] if sampled else 0, self.places,
                 self.least_stiffness, self.parts, self.needs, self.before, motion.per_mass, motion.gravity, elapsed,
                 O.dt, sampled, stored, self.seconds, self.tool_work, self.rock_work, self.sums, self.totals)
 
