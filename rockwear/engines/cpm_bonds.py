@@ -145,8 +145,8 @@ class CpmBonds(BondLog):
         self.there = self.loose = self.pulled_apart = None
 
     def _find(self):
-        """Bonds that are there, (k,) numbers; loose ones whose slip must be taken out in every step; and those that
-        YADE has broken and that crushing lets touch on."""
+        """Find the bonds that are there, (k,) numbers; loose ones whose slip must be taken out in every step; and those
+        that YADE has broken and that crushing lets touch on."""
         if self.there is None:
             self.there = np.flatnonzero(self.status != SEPARATED)
             self.loose = np.flatnonzero(self.slips_freely & (self.omega > LOOSE) & (self.status == INTACT))
@@ -208,16 +208,18 @@ class CpmBonds(BondLog):
 
     def act(self):
         """Sample the work of slip and look at the bonds, each in its turn."""
-        if O.iter % self.between_samples == 0:
+        step = O.iter
+        if step % self.between_samples == 0:
             self._sample()
-        if O.iter % self.between_looks == 0:
+        if step % self.between_looks == 0:
             self.look_at_all()
-        self._find()
+        if self.there is None:
+            self._find()
         if len(self.rising):
             compiled.weaken(MEMORY, self.where, self.rising, self.table)
         if len(self.loose):
             compiled.let_slip(MEMORY, self.where, self.loose, self.table, self.lengths)
-        if (O.iter + 1) % self.between_samples == 0:
+        if (step + 1) % self.between_samples == 0:
             self._prepare()
 
     def _prepare(self):

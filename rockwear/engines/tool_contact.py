@@ -98,7 +98,8 @@ class ToolContact(Engine):
     def act(self):
         if self.collider.numAction != self.collided:
             self.find_contacts()
-        sampled, stored = O.iter % self.sampling_period == 0, (O.iter + 1) % self.sampling_period == 0
+        step, period = O.iter, self.sampling_period
+        sampled, stored = step % period == 0, (step + 1) % period == 0
         if sampled or stored:
             self._visit(self.elapsed() if sampled else 0.0, sampled, stored)
 
