@@ -58,7 +58,7 @@ class FacetContact(ToolContact):
     def __init__(self, *, neighbours, needs=(WORK,), **common):
         super().__init__(needs=(*needs, SLIP), **common)
         self.neighbours = neighbours
-        self.reshaping_energy = 0.0
+        self.in_yade_balance = self.reshaping_energy = 0.0
         self.notches, self.reshaped = [], False
 
     def connect(self):
@@ -78,7 +78,7 @@ class FacetContact(ToolContact):
         stored = self._energy(of=np.flatnonzero(self.before[:, 3])) if self.reshaped else 0.0
         self.notches = []
         successions = [pair for rock, group in self.shared for pair in self._select(rock, group)]
-        self._visit(self.elapsed(), sampled=True, stored=False)
+        self.in_yade_balance += self._visit(self.elapsed(), sampled=True, stored=False)
         acting = {pieces(new): old for old, new in successions}
         for one, other in self._pairs():
             self._join(one, other, acting.get(pieces(one), one))
@@ -88,11 +88,6 @@ class FacetContact(ToolContact):
             self.reshaping_energy += self._energy() - stored
         self.reshaped = False
         self._visit(0.0, sampled=False, stored=True)
-
-    @property
-    def in_yade_balance(self):
-        """J that YADE's sum of plastic dissipation has of the tool."""
-        return float(self.totals[compiled.YADE_WORK])
 
     def shape_has_changed(self):
         """The contacts of the next step are those with another shape."""
@@ -241,8 +236,7 @@ class FacetContact(ToolContact):
 
     def restore(self, state):
         super().restore(state)
-        self.totals[compiled.YADE_WORK] = state["in_yade_balance"]
-        self.reshaping_energy = float(state["reshaping_energy"])
+        self.in_yade_balance, self.reshaping_energy = float(state["in_yade_balance"]), float(state["reshaping_energy"])
         self.reshaped = bool(state["reshaped"])
         self.notches = [tuple(row) for row in state["notches"].tolist()]
 

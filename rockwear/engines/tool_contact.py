@@ -45,7 +45,7 @@ class ToolContact(Engine):
         self.rock_work = np.zeros(len(motion.per_mass))
         needs = list(dict.fromkeys((WORK, *needs)))
         self.needs = np.array([[kind == NORMAL, exponent] for kind, exponent in needs], float).T.copy()
-        self.totals = np.zeros(7)
+        self.totals = np.zeros(6)
         self._begin_slid(needs)
         self._begin_contacts()
 
@@ -104,13 +104,15 @@ class ToolContact(Engine):
             self._visit(self.elapsed() if sampled else 0.0, sampled, stored)
 
     def _visit(self, elapsed, sampled, stored):
-        """What contacts do in this step, for `elapsed` (s), is sampled, their shear forces are stored."""
-        if len(self.places):
-            motion = self.motion
-            compiled.sample_tool(
-                MEMORY, WORDS, self.layout, self.body_list, motion.lists[0] if sampled else 0, self.places,
-                self.least_stiffness, self.parts, self.needs, self.before, motion.per_mass, motion.gravity, elapsed,
-                O.dt, sampled, stored, self.seconds, self.tool_work, self.rock_work, self.sums, self.totals)
+        """What contacts do in this step, for `elapsed` (s), is sampled, their shear forces are stored. -> J of friction
+        as YADE counts it."""
+        if not len(self.places):
+            return 0.0
+        motion = self.motion
+        return compiled.sample_tool(
+            MEMORY, WORDS, self.layout, self.body_list, motion.lists[0] if sampled else 0, self.places,
+            self.least_stiffness, self.parts, self.needs, self.before, motion.per_mass, motion.gravity, elapsed, O.dt,
+            sampled, stored, self.seconds, self.tool_work, self.rock_work, self.sums, self.totals)
 
     @property
     def friction(self):

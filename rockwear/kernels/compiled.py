@@ -308,7 +308,7 @@ a body, the pointer to its state; behind the state, its motion (m/s, rad/s) and 
 (GEOMETRY, CONSTANTS, BODIES, OF_NORMAL, OF_SHEAR, OF_DASHPOT, FRICTION, STIFFNESS, SHEAR_STIFFNESS, DAMPING, DIRECTION,
  MOVED, POINT, STATE, VELOCITY, SPIN, POSITION) = range(17)
 """Where in a layout it does."""
-FRICTION_WORK, TOOL_WORK, DASHPOT_WORK, YADE_WORK, IMPULSE = range(5)
+FRICTION_WORK, TOOL_WORK, DASHPOT_WORK, IMPULSE = range(4)
 """Places of what `sample_tool` adds up, of the impulse the first."""
 PERMANENT = 18
 """Words from the lists of forces, or torques, that YADE's threads add to that of the permanent ones."""
@@ -456,12 +456,15 @@ def sample_tool(memory, words, layout, bodies, forces, contacts, least, parts, n
     rock, gravity: (3,) m/s2; dt: s.
 
     Where `sampled`, these are added to for `elapsed` (s), for which this step stands: seconds (k,) in contact;
-    tool_work (m,), rock_work (n,) J of friction; slid (e, m), force^exponent times slip; totals (7,): friction, work of
-    the tool, of dashpots, friction as YADE counts it, slip times the force after it (J), and impulse on the tool (N s).
-    Where `stored`, `before` is that of the next step. Friction is the slip times the mean of the forces before and
+    tool_work (m,), rock_work (n,) J of friction; slid (e, m), force^exponent times slip; totals (6,): friction, work of
+    the tool, of dashpots (J), and impulse on the tool (N s). Where `stored`, `before` is that of the next step. -> J of
+    friction as YADE counts it, slip times the force after it.
+
+    Friction is the slip times the mean of the forces before and
     after the step, so that the work of the leapfrog integrator and the energy of the springs balance exactly. The
     tool's work is F v dt with the velocity of the tool at the contact point.
     """
+    in_yade = 0.0
     for k, contact in enumerate(contacts):
         if not is_real(words, layout, contact):
             if stored:
@@ -496,7 +499,7 @@ def sample_tool(memory, words, layout, bodies, forces, contacts, least, parts, n
                 mean = 0.5 * (norm((before[k, 0], before[k, 1], before[k, 2])) + after)
                 work = mean * slip
                 totals[FRICTION_WORK] += work
-                totals[YADE_WORK] += slip * after
+                in_yade += slip * after
                 tool_work[piece] += work
                 rock_work[rock] += work
                 # A dashpot may pull; only compression presses the surfaces together.
@@ -506,6 +509,7 @@ def sample_tool(memory, words, layout, bodies, forces, contacts, least, parts, n
                     slid[need, piece] += (pressing if needs[0, need] == 1.0 else mean)**needs[1, need] * slip
         if stored:
             before[k, 0], before[k, 1], before[k, 2], before[k, 3] = shear[0], shear[1], shear[2], 1.0
+    return in_yade
 
 
 @compiled
