@@ -3,7 +3,7 @@ PYTHON  := /usr/bin/python3
 OUT     := out
 SUDO    := $(if $(filter 0,$(shell id -u)),,sudo)
 
-TO_RUN  := yade python3-numpy python3-scipy python3-matplotlib python3-pil python3-stl
+TO_RUN  := yade python3-numpy python3-scipy python3-numba python3-matplotlib python3-pil python3-stl
 TO_SWEEP := python3-distributed
 TO_TEST := python3-pytest python3-pytest-xdist $(TO_SWEEP)
 TO_LINT := python3-flake8
@@ -34,7 +34,7 @@ help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "make %-18s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
 
 setup: ## install what a run needs (Debian packages) and check that YADE starts
-	$(call install,$(TO_RUN),numpy scipy matplotlib PIL stl)
+	$(call install,$(TO_RUN),numpy scipy numba matplotlib PIL stl)
 	@yade --version >/dev/null 2>&1 || \
 	  { echo "setup: YADE is missing or does not start (try: yade --version)" >&2; exit 1; }
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
-PLAIN = {"numpy", "scipy"}
+PLAIN = {"numpy", "scipy", "numba"}
 PAPER = PLAIN | {"matplotlib", "mpl_toolkits", "PIL"}
 YADE = PLAIN | {"yade", "minieigen"}
 

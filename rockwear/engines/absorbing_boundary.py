@@ -4,8 +4,9 @@ from yade import O, Vector3, ViscElMat, utils
 
 from rockwear.engines.access import IN_PLANE, IN_PLANE_WITHOUT_TURNING
 from rockwear.engines.base import Engine
-from rockwear.engines.memory import Motions
+from rockwear.engines.memory import MEMORY, Motions
 from rockwear.kernels.checks import require
+from rockwear.kernels.compiled import dashpot_power, gone_far, split
 from rockwear.kernels.viscous_spring import stable_dashpots, stable_masses, viscous_spring
 
 SUPPORT_RADIUS = 1e4
@@ -136,10 +137,10 @@ class AbsorbingBoundary(Engine):
     def _follow(self):
         """Move the supports of particles that have gone far along the normal, so that they touch at the centre again:
         what the springs exert by then becomes constant."""
-        along, _ = self._split(self._moved())
-        far = np.flatnonzero(np.abs(along) > FOLLOWED * self.radii)
-        if not len(far):
+        if not gone_far(MEMORY, self.motions.of("in_plane"), self.places, self.normals, FOLLOWED * self.radii):
             return
+        along, _ = split(self._moved(), self.normals)
+        far = np.flatnonzero(np.abs(along) > FOLLOWED * self.radii)
         before, way = self._energies()[far].sum(), along[far, None] * self.normals[far]
         self.forces[far] -= self.kn[far, None] * way
         self.places[far] += way
@@ -177,11 +178,6 @@ class AbsorbingBoundary(Engine):
         # Else a step right after one of YADE's loop goes without permanent forces.
         O.forces.f(0, sync=True)
 
-    def _split(self, vectors):
-        """(k,) components along the normals and across them."""
-        x, y = self.normals.T
-        return vectors[:, 0] * x + vectors[:, 1] * y, vectors[:, 1] * x - vectors[:, 0] * y
-
     def _moved(self):
         """(k, 2) m that the held particles have moved by."""
         return self.motions.read("in_plane").T - self.places
@@ -200,15 +196,12 @@ class AbsorbingBoundary(Engine):
     def _energies(self):
         """(k,) J of springs and constant forces."""
         moved = self._moved()
-        along, across = self._split(moved)
+        along, across = split(moved, self.normals)
         return 0.5 * (self.kn * along**2 + self.kt * across**2) - np.sum(self.forces * moved, axis=1)
 
     def _power(self):
         """W that the dashpots take now."""
-        if not len(self.numbers):
-            return 0.0
-        along, across = self._split(self.motions.read("moving").T)
-        return float(np.sum(self.cn * along**2 + self.ct * across**2))
+        return dashpot_power(MEMORY, self.motions.of("moving"), self.normals, self.cn, self.ct)
 
     def act(self):
         """Add the work of the dashpots since the last visit, and follow particles that have gone far."""

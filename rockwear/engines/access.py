@@ -21,10 +21,6 @@ IN_PLANE, IN_PLANE_WITHOUT_TURNING, FIXED = "zXY", "zXYZ", "xyzXYZ"
 """Degrees of freedom that YADE blocks: of particles in the plane, of such that do not turn, of bodies that do not move
 by themselves."""
 
-SLIDING = 1 - 1e-9
-"""|Ft| / mu |Fn| from which a contact slid in this step: YADE's laws return it to Coulomb's limit to round-off. (A
-looser test counts contacts that oscillate near the limit as sliding, and their work adds up.)"""
-
 
 def yade_engine(kind):
     """YADE's engine of the type `kind` in the scene that is in O now."""

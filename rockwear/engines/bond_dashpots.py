@@ -51,7 +51,7 @@ class BondDashpots(Engine):
         if runs == self.seen:
             return
         rock, self.seen = self.rock, runs
-        _, bodies = possible_contacts(rock.count)
+        bodies = possible_contacts(rock.count)[:, 1:]
         low, high = np.sort(bodies, axis=1).T
         keys = np.setdiff1d(low * rock.count + high, np.sort(rock.pairs, axis=1) @ (rock.count, 1))
         other = np.column_stack(np.divmod(keys, rock.count))

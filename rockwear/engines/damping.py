@@ -7,7 +7,8 @@ from yade import O, utils
 from rockwear.engines.access import FIXED, IN_PLANE
 from rockwear.engines.base import FORCES, Engine
 from rockwear.engines.bond_log import SEPARATED
-from rockwear.engines.memory import Motions
+from rockwear.engines.memory import MEMORY, WORDS, Motions, lists_of_forces
+from rockwear.kernels.compiled import exerted_on
 from rockwear.kernels.fragments import pieces
 from rockwear.kernels.rigid_motion import rigid_parts
 
@@ -79,11 +80,10 @@ class GrainDamping(Engine):
         if not len(free):
             return
         own = dict(masses=rock.masses[free], inertias=rock.inertias[free])
-        forces = np.array([(force[0], force[1]) for force in map(O.forces.f, free.tolist())])
-        torques = np.array([torque[2] for torque in map(O.forces.t, free.tolist())])
+        forces, torques = (exerted_on(MEMORY, WORDS, lists, free) for lists in lists_of_forces())
         now, turning = self.motions.read("moving", free).T, self.motions.read("turning", free)[0]
-        motion = dict(velocities=now + 0.5 * O.dt * forces / own["masses"][:, None],
-                      spins=turning + 0.5 * O.dt * torques / own["inertias"])
+        motion = dict(velocities=now + 0.5 * O.dt * forces[:, :2] / own["masses"][:, None],
+                      spins=turning + 0.5 * O.dt * torques[:, 2] / own["inertias"])
         velocities, spins = rigid_parts(np.unique(piece[free], return_inverse=True)[1], **own, **motion,
                                         positions=self.motions.read("in_plane", free).T)
         vibration, rolling = motion["velocities"] - velocities, motion["spins"] - spins

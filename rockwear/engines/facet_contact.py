@@ -5,8 +5,9 @@ import numpy as np
 from yade import O, Vector3
 
 from rockwear.engines.access import contact_energy, yade_friction_law
-from rockwear.engines.memory import place
+from rockwear.engines.memory import MEMORY, WORDS, place
 from rockwear.engines.tool_contact import ToolContact
+from rockwear.kernels import compiled
 from rockwear.kernels.facet_notch import joined_depth
 from rockwear.kernels.wear_laws import FRICTION, WORK
 
@@ -51,6 +52,9 @@ class FacetContact(ToolContact):
     times the force after it. Every step is sampled.
     """
 
+    # A duplicate has no force, and no contact time in which heat would pass.
+    least_stiffness = INACTIVE_STIFFNESS
+
     def __init__(self, *, neighbours, needs=(WORK,), **common):
         super().__init__(needs=(*needs, SLIP), **common)
         self.neighbours = neighbours
@@ -71,10 +75,10 @@ class FacetContact(ToolContact):
     def act(self):
         if self.collider.numAction != self.collided:
             self.find_contacts()
-        stored = self._energy(known=self.shear_before) if self.reshaped else 0.0
+        stored = self._energy(of=np.flatnonzero(self.before[:, 3])) if self.reshaped else 0.0
         self.notches = []
         successions = [pair for rock, group in self.shared for pair in self._select(rock, group)]
-        self._sample_all(self._now())
+        self.in_yade_balance += self._visit(self.elapsed(), sampled=True, stored=False)
         acting = {pieces(new): old for old, new in successions}
         for one, other in self._pairs():
             self._join(one, other, acting.get(pieces(one), one))
@@ -83,16 +87,17 @@ class FacetContact(ToolContact):
         if self.reshaped:
             self.reshaping_energy += self._energy() - stored
         self.reshaped = False
-        self._store_shear(self._now())
+        self._visit(0.0, sampled=False, stored=True)
 
     def shape_has_changed(self):
         """The contacts of the next step are those with another shape."""
         self.reshaped = True
 
-    def _energy(self, known=None):
-        """J in the springs of contacts, or of those `known`, at the depths that YADE has found in this step."""
-        return self._stored((contact.interaction for contact in self.possible
-                             if contact.interaction.isReal and (known is None or pieces(contact) in known)), as_found)
+    def _energy(self, of=None):
+        """J in the springs of contacts, or of those numbers `of` them, at the depths that YADE has found in this
+        step."""
+        contacts = self.possible if of is None else [self.possible[k] for k in of.tolist()]
+        return self._stored((one.interaction for one in contacts if one.interaction.isReal), as_found)
 
     def _stored(self, interactions, depth_of):
         """J in the springs of these contacts and of joined ones. depth_of: as_found or the like."""
@@ -106,15 +111,6 @@ class FacetContact(ToolContact):
         real = {pieces(contact): contact for contact in self.possible if contact.interaction.isReal}
         found = [(real.get((one, rock)), real.get((other, rock))) for one, other, rock in self.notches]
         return [pair for pair in found if None not in pair]
-
-    def _sample(self, contact, now, elapsed):
-        # A duplicate has no force, and no contact time in which heat would pass.
-        if not inactive(contact):
-            super()._sample(contact, now, elapsed)
-
-    def _add_slip(self, contact, now, before, after, slip):
-        super()._add_slip(contact, now, before, after, slip)
-        self.in_yade_balance += slip * after
 
     def _select(self, rock, group):
         """Make new duplicates among the contacts of a particle inactive, and others active that have no predecessor.
@@ -202,7 +198,9 @@ class FacetContact(ToolContact):
         """Take the contact's force off the particle in this step, and its friction off YADE's sum of plastic
         dissipation."""
         interaction, _, rock, tool_first = contact
-        counted = self._slip(contact, self._values(place(interaction)))[1] * interaction.phys.shearForce.norm()
+        slip = compiled.tool_slip(MEMORY, WORDS, self.layout, self.body_list, place(interaction),
+                                  self.before[self.possible.index(contact)], O.dt)
+        counted = slip * interaction.phys.shearForce.norm()
         self.functor.initPlasticDissipation(self.functor.plasticDissipation() - counted)
         force = interaction.phys.normalForce + interaction.phys.shearForce
         force = -force if tool_first else force
@@ -214,12 +212,13 @@ class FacetContact(ToolContact):
         depth, parts = self._joined(one, other, as_found)
         if parts is None or inactive(acting) or acting.interaction.phys.normalForce.norm() < INACTIVE_STIFFNESS:
             return
-        interaction, piece, rock, tool_first = acting
+        interaction, _, rock, tool_first = acting
         force = (outwards(one) * (depth * parts[0]) + outwards(other) * (depth * parts[1])
                  - outwards(acting) * interaction.geom.penetrationDepth) * interaction.phys.kn
         O.forces.addF(rock, force)
-        self.impulse -= np.array(force) * O.dt
-        self.work_done += force.dot(Vector3(*self.tool.velocity_at(piece, interaction, tool_first))) * O.dt
+        self.totals[compiled.IMPULSE:] -= np.array(force) * O.dt
+        of_first, of_second = compiled.velocities(MEMORY, WORDS, self.layout, self.body_list, place(interaction))
+        self.totals[compiled.TOOL_WORK] += force.dot(Vector3(*(of_first if tool_first else of_second))) * O.dt
 
     def _joined_energy(self, pair, depth_of):
         """J that the joined depth of two contacts holds more than the active one of them."""

@@ -11,12 +11,13 @@ import ctypes
 import os
 import sys
 from functools import cache
-from operator import attrgetter, itemgetter
+from operator import attrgetter
 
 import numpy as np
-from yade import FrictViscoPhys, Interaction, O, ScGeom, State, config
+from yade import Body, FrictViscoPhys, Interaction, O, ScGeom, State, config
 
 from rockwear.kernels.checks import require
+from rockwear.kernels import compiled
 
 INSTANCE, HOLDER = 40, 16
 """Bytes from the beginning of an instance to its pointer to the holder (behind count, type, size, dictionary and weak
@@ -27,8 +28,6 @@ MEMORY = np.frombuffer((ctypes.c_double * 2**45).from_address(SIZE))
 """All memory that a process may have with addresses of 48 bits, but for its first number."""
 WORDS = MEMORY.view(np.int64)
 """The same as integers: pointers, counts, numbers of bodies."""
-ONE_BY_ONE, WORDS_ONE_BY_ONE = memoryview(MEMORY), memoryview(WORDS)
-"""The same again, for a few numbers at a time: numpy takes as long for one as for a hundred."""
 MARKS = (0.31415926535, -9.87654321e-3, 5.55e11)
 """Written by Python and looked for in memory; no vector of YADE's has them."""
 
@@ -193,8 +192,8 @@ def class_of(found):
 
 
 _FORCES = {"normal_force": "normalForce", "shear_force": "shearForce", "viscous_force": "normalViscous"}
-_CONSTANTS = {"friction": "tangensOfFrictionAngle", "ks": "ks", "cn": "cn"}
-_GEOMETRY = {"normal": "normal", "increment": "shearInc"}
+_CONSTANTS = {"friction": "tangensOfFrictionAngle", "kn": "kn", "ks": "ks", "cn": "cn"}
+_GEOMETRY = {"normal": "normal", "increment": "shearInc", "point": "contactPoint"}
 """Vectors and numbers of a contact: their names in YADE."""
 
 
@@ -202,8 +201,8 @@ _GEOMETRY = {"normal": "normal", "increment": "shearInc"}
 def contact_layout():
     """{name: how far behind} of a contact's pointers to its geometry and its constants and of its two bodies; behind
     the constants, of the forces (N), the friction and the stiffness and damping (N/m, N s/m) of a contact with
-    friction, of which the viscous ones are there at the tool only; behind the geometry, of the normal and the shear
-    increment (m). Raises ParameterError."""
+    friction, of which the viscous ones are there at the tool only; behind the geometry, of the normal, the shear
+    increment and the point of contact (m). Raises ParameterError."""
     geoms, physes = [ScGeom() for _ in range(TRIED)], [FrictViscoPhys() for _ in range(TRIED)][::-1]
     contacts = [Interaction(id1=11 * k, id2=12345 + k) for k in range(TRIED)]
     marks = {name: [mark * (1.0 + k) for mark in MARKS * TRIED] for k, name in enumerate(_CONSTANTS)}
@@ -231,19 +230,69 @@ def contact_columns(*names):
     return np.array([[layout[name] + along] for name in names for along in range(1 if name in _CONSTANTS else 3)])
 
 
-class ContactReader:
-    """Reads vectors and numbers of these names of the constants, or of the geometry, `part` ("phys", "geom"), of one
-    contact at a time, as one tuple."""
+@cache
+def kernel_layout():
+    """(17,) what compiled.CONTACT says, of contacts and of bodies. Raises ParameterError."""
+    bodies = [Body() for _ in range(TRIED)]
+    states = [body.state for body in bodies]
+    found = {**contact_layout(), "state": offset("state", bodies, [SIZE * (place(state) + 1) for state in states]),
+             **{name: place(getattr(states[0], of)) - place(states[0])
+                for name, of in (("velocity", "vel"), ("spin", "angVel"))}}
+    found["position"] = found["velocity"] + _position()
+    return np.array([found[name] for name in compiled.CONTACT])
 
-    def __init__(self, part, *names):
-        columns = contact_columns(*names).ravel()
-        self.pointer, self.begin, self.end = contact_layout()[part], int(columns.min()), int(columns.max()) + 1
-        self.pick = itemgetter(*(columns - self.begin).tolist())
 
-    def of(self, contact):
-        """Numbers of the contact at this place, which must be in contact now."""
-        there = pointed(WORDS_ONE_BY_ONE[contact + self.pointer])
-        return self.pick(ONE_BY_ONE[there + self.begin:there + self.end].tolist())
+def list_of_bodies():
+    """Index in MEMORY of the pointer to the list of the scene's bodies, by number: pairs of pointers, to the body and
+    to the count of its owners. A body that has been erased is no pointer. Raises ParameterError."""
+    return place(O.bodies) + _word_of_bodies()
+
+
+@cache
+def _word_of_bodies():
+    """Which word of the container of bodies begins the list of them."""
+    bodies = map(O.bodies.__getitem__, range(len(O.bodies)))
+    return _word_of_list("list of bodies", O.bodies, [0 if one is None else SIZE * (place(one) + 1) for one in bodies])
+
+
+FORCES, TORQUES = 32, 3
+"""Words of YADE's scene among which its forces are looked for, and from these on to torques."""
+_words = []
+"""Which they are, once they are found."""
+
+
+def lists_of_forces():
+    """Indices in MEMORY of the pointers to the lists of the scene's forces and torques (compiled.exerted); zeros as
+    long as nothing exerts any force. Raises ParameterError."""
+    scene = place(O.forces)
+    if not _words:
+        _words.extend(_words_of_forces(scene))
+    return tuple(scene + word for word in _words) if _words else (0, 0)
+
+
+def _words_of_forces(scene):
+    """[which word of the scene is that of forces, of torques]: they have for all bodies what Python has."""
+    size, bodies = 3 * SIZE * O.numThreads, range(len(O.bodies))
+    for word in range(FORCES):
+        begin, end, _ = _peek(SIZE * (scene + 1 + word), 3, np.int64).tolist()
+        if end - begin != size or not all(map(_is_list, _peek(begin, size // SIZE, np.int64).reshape(-1, 3).tolist())):
+            continue
+        # Beyond the end of the list of permanent ones Python has any numbers.
+        last = int(np.subtract(*WORDS[scene + word + compiled.PERMANENT:][1::-1])) // (3 * SIZE) or len(bodies)
+        exerted = [[tuple(given(body)) for body in bodies[:last]] for given in (O.forces.f, O.forces.t)]
+        if not np.any(exerted[0]):
+            return []
+        if all(np.array_equal([compiled.exerted(MEMORY, WORDS, scene + word + behind, body) for body in bodies[:last]],
+                              values) for behind, values in zip((0, TORQUES), exerted)):
+            return [word, word + TORQUES]
+    require_memory(False, "forces")
+    return None
+
+
+def _is_list(ends):
+    """Whether these begin, end and end of the room, bytes, are those of a list of vectors."""
+    begin, end, _ = ends
+    return begin % SIZE == 0 and 0 < begin < end and (end - begin) % (3 * SIZE) == 0 and len(_peek(begin, 1)) == 1
 
 
 def in_contact(places):
@@ -260,20 +309,29 @@ def all_contacts():
 
     What they are read by must be read before YADE's loop goes on, or while Python holds them. Raises ParameterError.
     """
-    begin, end = WORDS[place(O.interactions) + _list_of_contacts():][:2].tolist()
+    begin, end = WORDS[list_of_contacts():][:2].tolist()
     return pointed(WORDS[pointed(begin):pointed(end):2])
 
 
+def list_of_contacts():
+    """Index in MEMORY of the pointer to the list of the scene's contacts, as `list_of_bodies`."""
+    return place(O.interactions) + _word_of_contacts()
+
+
 @cache
-def _list_of_contacts():
-    """Which word of the container of contacts begins the list of them: pairs of pointers, to the contact and to the
-    count of its owners."""
-    contacts, container = [place(contact) for contact in O.interactions.all()], place(O.interactions)
+def _word_of_contacts():
+    """Which word of the container of contacts begins the list of them."""
+    return _word_of_list("list of contacts", O.interactions,
+                         [SIZE * (place(contact) + 1) for contact in O.interactions.all()])
+
+
+def _word_of_list(name, container, pointers):
+    """Which word of a container of YADE's begins its list of what these `pointers` point to. Raises ParameterError."""
     for word in range(CONTAINER):
-        begin, end = _peek(SIZE * (container + 1 + word), 2, np.int64).tolist()
-        if end - begin == 2 * SIZE * len(contacts):
-            found = _peek(begin, 2 * len(contacts), np.int64)[::2]
-            if np.array_equal(pointed(found), contacts):
+        begin, end = _peek(SIZE * (place(container) + 1 + word), 2, np.int64).tolist()
+        if end - begin == 2 * SIZE * len(pointers):
+            found = _peek(begin, 2 * len(pointers), np.int64)[::2]
+            if np.array_equal(found, pointers):
                 return word
-    require_memory(False, "list of contacts")
+    require_memory(False, name)
     return None

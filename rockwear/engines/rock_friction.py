@@ -5,29 +5,26 @@ import numpy as np
 
 from yade import CpmPhys, InsertionSortCollider, JCFpmPhys, O
 
-from rockwear.engines.access import (
-    SLIDING, body_erased, contact_energy, contact_of, yade_engine, yade_friction_law)
+from rockwear.engines.access import contact_energy, contact_of, yade_engine, yade_friction_law
 from rockwear.engines.base import FORCES, Engine
 from rockwear.engines.bond_log import SEPARATED
 from rockwear.engines.memory import (
-    MEMORY, WORDS, all_contacts, class_of, contact_columns, contact_layout, in_contact, place, pointed)
+    MEMORY, WORDS, class_of, kernel_layout, list_of_bodies, list_of_contacts, place)
+from rockwear.kernels import compiled
 
 
 @cache
 def bond_classes():
-    """What begins the constants of a bond in memory."""
-    return [class_of(JCFpmPhys()), class_of(CpmPhys())]
+    """(2,) what begins the constants of a bond in memory."""
+    return np.array([class_of(JCFpmPhys()), class_of(CpmPhys())])
 
 
-def possible_contacts(particles):
-    """(k,) indices in memory and (k, 2) bodies of the pairs among bodies 0..particles-1 that YADE holds possible."""
+def possible_contacts(particles, others=np.empty(0, int)):
+    """(k, 3) indices in memory and bodies of the pairs among bodies 0..particles-1 that YADE holds possible; but for
+    those with constants of the classes `others`."""
     if not len(O.interactions):
-        return np.empty(0, np.int64), np.empty((0, 2), np.int64)
-    layout, places = contact_layout(), all_contacts()
-    bodies = WORDS.take(places + layout["bodies"])
-    pairs = np.column_stack([bodies & 0xffffffff, bodies >> 32])
-    rock = pairs.max(axis=1) < particles
-    return places[rock], pairs[rock]
+        return np.empty((0, 3), np.int64)
+    return compiled.between_rock(WORDS, kernel_layout(), list_of_contacts(), particles, others)
 
 
 class RockContacts(Engine):
@@ -45,6 +42,8 @@ class RockContacts(Engine):
         self.particles = len(motion.per_mass)
 
     def connect(self):
+        self.layout, self.body_list = kernel_layout(), list_of_bodies()
+        self.motion.connect()
         self.held = {}
         self.find_contacts()
 
@@ -67,17 +66,9 @@ class RockContacts(Engine):
     def _possible(self):
         """Places in memory and bodies [(first, second)] of all pairs of rock particles that are no bonds, ordered by
         the bodies: a loaded scene has them in another order."""
-        places, pairs = possible_contacts(self.particles)
-        if not len(places):
-            return [], []
-        phys = WORDS.take(places + contact_layout()["phys"])
-        loose, made = np.ones(len(places), bool), np.flatnonzero(phys)
-        kinds = WORDS.take(pointed(phys[made]))
-        for bond in bond_classes():
-            loose[made[kinds == bond]] = False
-        (first, second), places = pairs[loose].T, places[loose]
-        order = np.lexsort((second, first))
-        return places[order].tolist(), list(zip(first[order].tolist(), second[order].tolist()))
+        found = possible_contacts(self.particles, bond_classes())
+        found = found[np.lexsort((found[:, 2], found[:, 1]))].tolist()
+        return [row[0] for row in found], [(first, second) for _, first, second in found]
 
     def _keep_up(self):
         """Bring `possible` up to date, where the collider has run or bonds have parted since."""
@@ -114,11 +105,10 @@ class RockContacts(Engine):
 class RockFriction(RockContacts):
     """Friction work between rock particles, by particle, sampled at each visit.
 
-    A contact that slides dissipates |Ft| times the irreversible slip [Rojek 2014, eq. 36], which is the slip less what
-    a rising limit mu |Fn| lets the spring take up. The force of a step works over the mean of the velocities before
-    and after the integrator, whose change `motion` predicts. (YADE's sum of plastic dissipation is not used: it takes
-    the force after the slip for the mean force, and omits the shear spring of a contact that opens. Where particles
-    collide, each time for a few steps, it misses a fifth of the work.)
+    A contact that slides dissipates |Ft| times the irreversible slip (kernels.compiled.friction_work), over the mean of
+    the velocities before and after the integrator, whose change `motion` predicts. (YADE's sum of plastic dissipation
+    is not used: it takes the force after the slip for the mean force, and omits the shear spring of a contact that
+    opens. Where particles collide, each time for a few steps, it misses a fifth of the work.)
     """
 
     def __init__(self, **common):
@@ -129,34 +119,16 @@ class RockFriction(RockContacts):
     def act(self):
         elapsed = self.elapsed()
         self._keep_up()
-        mu = self.bonds.law.mu
-        for interaction, phys in self.bonds.broken.values():
-            if phys.crackJointAperture == 0.0:
-                self._sample(interaction, phys, mu, elapsed)
-        for k in self._sliding().tolist():
-            interaction = self.possible[k]
-            self._sample(interaction, interaction.phys, interaction.phys.tangensOfFrictionAngle, elapsed)
-
-    def _sliding(self):
-        """(k,) which of `possible` slide now; a few more, perhaps, by round-off."""
-        real, phys, _ = in_contact(self.places)
-        values = MEMORY.take(phys + contact_columns("normal_force", "shear_force", "friction"), mode="wrap")
-        normal, shear = values[:3], values[3:6]
-        limit = (SLIDING * values[6])**2 * (normal * normal).sum(axis=0)
-        return real[(shear * shear).sum(axis=0) > (1.0 - 1e-12) * limit]
-
-    def _sample(self, interaction, phys, mu, elapsed):
-        limit, tangential = mu * phys.normalForce.norm(), phys.shearForce.norm()
-        if not tangential > SLIDING * limit > 0.0 or body_erased(interaction):
-            return
-        normal = interaction.geom.normal
-        velocity = interaction.geom.incidentVel(interaction, False) + 0.5 * self.motion.gain(interaction, normal)
-        slip = -phys.shearForce.dot(velocity) / tangential
-        taken_up = -mu * phys.kn / phys.ks * normal.dot(velocity)
-        work = tangential * max(slip - taken_up, 0.0) * elapsed
-        self.total += work
-        self.work[interaction.id1] += 0.5 * work
-        self.work[interaction.id2] += 0.5 * work
+        # What is open has no force.
+        broken = [place(contact) for contact, phys in self.bonds.broken.values() if phys.crackJointAperture == 0.0]
+        contacts = np.concatenate([broken, self.places]).astype(np.int64) if broken else self.places
+        friction = np.full(len(contacts), np.nan)
+        friction[:len(broken)] = self.bonds.law.mu
+        if len(contacts):
+            motion = self.motion
+            self.total += compiled.rub(
+                MEMORY, WORDS, self.layout, self.body_list, *motion.lists, contacts, friction, motion.per_mass,
+                motion.per_inertia, motion.radii, elapsed, O.dt, self.work)
 
     def take_work(self):
         """(n,) friction work (J) of each particle since the last call."""

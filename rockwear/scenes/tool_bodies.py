@@ -82,17 +82,6 @@ class ToolBodies:
             self.velocities[index] = tuple(velocity)
             O.bodies[body].state.vel = (*velocity, 0.0)
 
-    def velocity_at(self, index, interaction, tool_first):
-        """(vx, vy, vz) m/s of the tool where this contact of particle `index` is."""
-        vx, vy = self.velocities[index]
-        if self.angular_velocity:
-            # The contact point turns with the tool about its particle's centre.
-            geom = interaction.geom
-            side = 1 if tool_first else -1
-            turning = self.angular_velocity * (self.tool.radii[index] - 0.5 * geom.penetrationDepth) * side
-            vx, vy = vx - turning * geom.normal[1], vy + turning * geom.normal[0]
-        return vx, vy, 0.0
-
     def _moving_point(self):
         """A point of the tool, m, and its velocity, m/s."""
         if not self.body_of:
@@ -179,13 +168,6 @@ class FacetBodies(ToolBodies):
             self._set_off(index, body.state, x, y, origin, velocity)
         # Facets may now reach where no contact was possible before: the collider is to run in the next step.
         access.yade_engine(NewtonIntegrator).maxVelocitySq = 0.0
-
-    def velocity_at(self, index, interaction, tool_first):
-        vx, vy = self.velocities[index]
-        if self.angular_velocity:
-            x, y, _ = interaction.geom.contactPoint - O.bodies[self.body_of[index]].state.pos
-            vx, vy = vx - self.angular_velocity * y, vy + self.angular_velocity * x
-        return vx, vy, 0.0
 
     def outward(self, index):
         """(3,) normal of facet `index` in the tool's frame, of any length, as YADE has the facet."""

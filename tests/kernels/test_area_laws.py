@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from rockwear.kernels.bond_laws import Cohesive, Coulomb, ElasticDamage
-from rockwear.kernels.bond_laws.cohesive import softening_energy
+from rockwear.kernels.compiled import softening_energy
 from rockwear.kernels.checks import ParameterError
 
 KN, KT, RN, RT, MU, ENERGY = 2e10, 1e10, 1e5, 1.2e5, 0.5, 0.75
@@ -91,7 +91,7 @@ def test_what_damage_dissipates_is_the_work_less_what_is_stored(energy, seed):
     bond, before, done, damaged = law.initial_state(), (0.0, 0.0), 0.0, 0
 
     def dissipated(softening):
-        return softening_energy(softening, Rn=law.Rn, onset=law.onset, gone=law.gone)
+        return softening_energy(softening, law.Rn, law.onset, law.gone)
 
     for un in path.tolist():
         Fn, Ft = law.respond(bond, un, (0.0,))

@@ -14,19 +14,6 @@ pulls a crushed bond the wrong way until the next look, up to onset/(gone - onse
 """
 
 
-def opening(softening, *, onset, gone):
-    """Largest opening (m) so far of bonds of these omega > 0. onset, gone: m, at the peak and at the end."""
-    return onset / (1.0 - softening * (1.0 - onset / gone))
-
-
-def softening_energy(softening, *, Rn, onset, gone):
-    """Energy (J) that softening to these omega has dissipated. Rn: N, the strength; onset, gone: m, see `opening`."""
-    u = opening(softening, onset=onset, gone=gone)
-    # Under the curve up to u, less what unloading along the secant gives back.
-    force = Rn * (gone - u) / (gone - onset)
-    return 0.5 * (Rn * onset + (Rn + force) * (u - onset) - force * u)
-
-
 class Cohesive(LinearBondLaw):
     """Tension softens linearly with a fracture energy, shear slips at Coulomb's limit, compression may crush.
 
@@ -133,7 +120,7 @@ class Cohesive(LinearBondLaw):
 
     def opening(self, softening):
         """Largest opening (m) so far of a bond of this omega > 0."""
-        return opening(softening, onset=self.onset, gone=self.gone)
+        return self.onset / (1.0 - softening * (1.0 - self.onset / self.gone))
 
     @property
     def coupling(self):

@@ -303,8 +303,7 @@ def sliding_block():
         body = yade_scene.finite_disc(place, radius, material="steel", mask=yade_scene.TOOL_MASK, mass=0.0, inertia=0.0)
         body.state.blockedDOFs = "xyzXYZ"
         bodies[index] = O.bodies.append(body)
-    tool = SimpleNamespace(count=discs, body_of=bodies, ids=list(bodies.values()),
-                           velocity_at=lambda *contact: (0.0, 0.0, 0.0))
+    tool = SimpleNamespace(count=discs, body_of=bodies, ids=list(bodies.values()))
     bonds = Bonds(pairs=rock.pairs, law=UNBREAKABLE, clock=lambda: O.time, period=None)
     motion = VelocityIncrement(masses=rock.masses, inertias=rock.inertias, radii=rock.radii, fixed=rock.fixed)
     friction = RockFriction(bonds=bonds, motion=motion, period=4)
@@ -359,8 +358,7 @@ def collisions():
                                           mask=yade_scene.TOOL_MASK, mass=0.0, inertia=0.0)
             body.state.blockedDOFs = "xyzXYZ"
             bodies = {0: O.bodies.append(body)}
-            tool = SimpleNamespace(count=1, body_of=bodies, ids=list(bodies.values()),
-                                   velocity_at=lambda *contact: (0.0, 0.0, 0.0))
+            tool = SimpleNamespace(count=1, body_of=bodies, ids=list(bodies.values()))
             motion = VelocityIncrement(masses=rock.masses, inertias=rock.inertias, radii=rock.radii, fixed=rock.fixed)
             contact = ToolContact(tool=tool, motion=motion)
             O.dt = fraction * 2 / math.sqrt(2 * TOOL.kn / rock.masses[0]) * (math.sqrt(1 + 0.81) - 0.9)

@@ -14,8 +14,10 @@ from yade import (
     Law2_ScGeom_FrictPhys_CundallStrack, NewtonIntegrator, O, ScGeom, Vector3, utils)
 
 from rockwear.engines import cpm_bonds, memory
+from rockwear.kernels import compiled
 from rockwear.kernels.bond_laws import Cohesive
 from rockwear.kernels.checks import ParameterError
+from rockwear.kernels.compiled import CONTACT
 
 COUNT = 7
 VALUES = np.random.default_rng(1).normal(size=(3, COUNT)) * 10.0**np.arange(-9, 12, 3)
@@ -126,14 +128,33 @@ def contact_of_the_tool():
                for name, attribute in names.items() if name not in memory._CONSTANTS]
     for vector, values in zip(vectors, VALUES.T.tolist()):
         write(vector, values)
+    layout, words = dict(zip(CONTACT, memory.kernel_layout().tolist())), memory.WORDS
     found = {}
     for part, names in parts.items():
-        together = iter(memory.ContactReader(part, *names).of(memory.place(contact)))
+        begin = memory.pointed(words[memory.place(contact) + layout[part]])
         for name, attribute in names.items():
             value = getattr(getattr(contact, part), attribute)
-            found[name] = ([next(together) for _ in range(1 if name in memory._CONSTANTS else 3)],
+            count = 1 if name in memory._CONSTANTS else 3
+            found[name] = (memory.MEMORY[begin + layout[name]:][:count].tolist(),
                            [value] if name in memory._CONSTANTS else list(value))
     return found
+
+
+def velocities_at_contacts():
+    """{what: from memory, from Python} of contacts of spheres that move and turn: velocities of the second body, less
+    that of the first, at the point of contact; and which bodies are there."""
+    contacts_of_yade()
+    for body, velocity, spin in zip(O.bodies, VALUES.T.tolist(), -VALUES.T):
+        body.state.vel, body.state.angVel = velocity, spin.tolist()
+    real = [i for i in O.interactions if i.isReal]
+    where = memory.MEMORY, memory.WORDS, memory.kernel_layout(), memory.list_of_bodies()
+    both = [np.array(compiled.velocities(*where, memory.place(i))) for i in real]
+    python = [list(i.geom.incidentVel(i, False)) for i in real]
+    O.bodies.erase(8)
+    scale = np.abs(python).max(axis=1, keepdims=True)
+    return {"relative": (np.round([second - first for first, second in both] / scale, 12).tolist(),
+                         np.round(python / scale, 12).tolist()),
+            "there": ([bool(compiled.is_there(where[1], where[3], k)) for k in range(9)], [k != 8 for k in range(9)])}
 
 
 def motions():
@@ -181,7 +202,8 @@ def left_as_it_was():
 
 checks = {
     "wrong": read_and_written(), "wrong together": together(), "behind": behind(), "left": left_as_it_was(),
-    "contacts": contacts_of_yade(), "contact of the tool": contact_of_the_tool(), "motions": motions(),
+    "contacts": contacts_of_yade(), "contact of the tool": contact_of_the_tool(),
+    "velocities": velocities_at_contacts(), "motions": motions(),
     "as it is": refused(INSTANCE=memory.INSTANCE),
     "other layouts": [refused(INSTANCE=i, HOLDER=h) for i in (24, 32, 40, 48) for h in (0, 8, 16, 24)
                       if (i, h) != (40, 16)],
