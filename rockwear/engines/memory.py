@@ -257,22 +257,35 @@ def _word_of_bodies():
 
 FORCES, TORQUES = 32, 3
 """Words of YADE's scene among which its forces are looked for, and from these on to torques."""
-_words = []
-"""Which they are, once they are found."""
+COMPARED = 1000
+"""Bodies whose forces are compared."""
 
 
 def lists_of_forces():
-    """Indices in MEMORY of the pointers to the lists of the scene's forces and torques (compiled.exerted); zeros as
-    long as nothing exerts any force. Raises ParameterError."""
-    scene = place(O.forces)
-    if not _words:
-        _words.extend(_words_of_forces(scene))
-    return tuple(scene + word for word in _words) if _words else (0, 0)
+    """Indices in MEMORY of the pointers to the lists of the scene's forces and torques (compiled.exerted). Raises
+    ParameterError."""
+    word = _word_of_forces()
+    return place(O.forces) + word, place(O.forces) + word + TORQUES
 
 
-def _words_of_forces(scene):
-    """[which word of the scene is that of forces, of torques]: they have for all bodies what Python has."""
-    size, bodies = 3 * SIZE * O.numThreads, range(len(O.bodies))
+@cache
+def _word_of_forces():
+    """Which word of the scene is that of forces: there is for all bodies what Python has. Where no force acts, the
+    first body takes some meanwhile."""
+    still = not np.any(O.forces.f(0)) and not np.any(O.forces.t(0))
+    if still:
+        O.forces.addF(0, MARKS)
+        O.forces.addT(0, MARKS)
+    try:
+        return _word_with_forces(place(O.forces))
+    finally:
+        if still:
+            O.forces.addF(0, [-mark for mark in MARKS])
+            O.forces.addT(0, [-mark for mark in MARKS])
+
+
+def _word_with_forces(scene):
+    size, bodies = 3 * SIZE * O.numThreads, range(min(len(O.bodies), COMPARED))
     for word in range(FORCES):
         begin, end, _ = _peek(SIZE * (scene + 1 + word), 3, np.int64).tolist()
         if end - begin != size or not all(map(_is_list, _peek(begin, size // SIZE, np.int64).reshape(-1, 3).tolist())):
@@ -280,11 +293,9 @@ def _words_of_forces(scene):
         # Beyond the end of the list of permanent ones Python has any numbers.
         last = int(np.subtract(*WORDS[scene + word + compiled.PERMANENT:][1::-1])) // (3 * SIZE) or len(bodies)
         exerted = [[tuple(given(body)) for body in bodies[:last]] for given in (O.forces.f, O.forces.t)]
-        if not np.any(exerted[0]):
-            return []
         if all(np.array_equal([compiled.exerted(MEMORY, WORDS, scene + word + behind, body) for body in bodies[:last]],
                               values) for behind, values in zip((0, TORQUES), exerted)):
-            return [word, word + TORQUES]
+            return word
     require_memory(False, "forces")
     return None
 

@@ -110,7 +110,7 @@ class ToolContact(Engine):
             return 0.0
         motion = self.motion
         return compiled.sample_tool(
-            MEMORY, WORDS, self.layout, self.body_list, motion.lists[0] if sampled else 0, self.places,
+            MEMORY, WORDS, self.layout, self.body_list, motion.lists[0], self.places,
             self.least_stiffness, self.parts, self.needs, self.before, motion.per_mass, motion.gravity, elapsed, O.dt,
             sampled, stored, self.seconds, self.tool_work, self.rock_work, self.sums, self.totals)
 

@@ -21,16 +21,7 @@ class VelocityIncrement:
                                            for values in (masses, inertias))
         self.radii = np.array(radii, float)
         self.gravity = np.zeros(3) if gravity is None else np.array(gravity, float)
-        self.found = None
 
     def connect(self):
-        """Another scene is in O now."""
-        self.found = None
-
-    @property
-    def lists(self):
-        """(forces, torques)."""
-        lists = self.found or lists_of_forces()
-        if lists[0]:
-            self.found = lists
-        return lists
+        """Find the lists of the scene that is in O now."""
+        self.lists = lists_of_forces()

@@ -388,9 +388,7 @@ def add(a, b, factor):
 @compiled
 def exerted(memory, words, lists, body):
     """(3,) N or N m on a body in this step so far. lists: place of a pointer to the lists of what each thread of YADE's
-    adds, by body; PERMANENT behind it, of a pointer to the list of what is permanent; 0: there is none."""
-    if lists == 0:
-        return 0.0, 0.0, 0.0
+    adds, by body; PERMANENT behind it, of a pointer to the list of what is permanent."""
     one, end = pointed(words[lists]), pointed(words[lists + 1])
     x, y, z = 0.0, 0.0, 0.0
     while one < end:
