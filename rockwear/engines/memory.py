@@ -270,18 +270,17 @@ def lists_of_forces():
 
 @cache
 def _word_of_forces():
-    """Which word of the scene is that of forces: there is for all bodies what Python has. Where no force acts, the
-    first body takes some meanwhile."""
+    """Which word of the scene is that of forces: there is for all bodies what Python has. Where the first body feels
+    none, it takes some meanwhile; without any YADE may have no list yet."""
     still = not np.any(O.forces.f(0)) and not np.any(O.forces.t(0))
-    if still:
-        O.forces.addF(0, MARKS)
-        O.forces.addT(0, MARKS)
+    added = np.array(MARKS) if still else np.zeros(3)
+    O.forces.addF(0, added)
+    O.forces.addT(0, added)
     try:
         return _word_with_forces(place(O.forces))
     finally:
-        if still:
-            O.forces.addF(0, [-mark for mark in MARKS])
-            O.forces.addT(0, [-mark for mark in MARKS])
+        O.forces.addF(0, -added)
+        O.forces.addT(0, -added)
 
 
 def _word_with_forces(scene):
@@ -301,9 +300,11 @@ def _word_with_forces(scene):
 
 
 def _is_list(ends):
-    """Whether these begin, end and end of the room, bytes, are those of a list of vectors."""
+    """Whether these begin, end and end of the room, bytes, are those of a list of vectors; that of a thread may be
+    empty."""
     begin, end, _ = ends
-    return begin % SIZE == 0 and 0 < begin < end and (end - begin) % (3 * SIZE) == 0 and len(_peek(begin, 1)) == 1
+    return begin == end or (begin % SIZE == 0 and 0 < begin < end and (end - begin) % (3 * SIZE) == 0
+                            and len(_peek(begin, 1)) == 1)
 
 
 def in_contact(places):

@@ -1,7 +1,9 @@
 """YADE's vectors in memory: what is read and written is Python's; another layout is refused in one line."""
+import json
+
 import pytest
 
-from tests.running import checks_of
+from tests.running import ROOT, checks_of, run_script
 
 
 @pytest.fixture(scope="module")
@@ -30,6 +32,16 @@ def test_contacts_are_those_of_python(found):
 def test_contacts_of_the_tool_and_motions_of_bodies_are_those_of_python(found, what):
     for in_memory, in_python in found[what].values():
         assert in_memory == in_python
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+def test_forces_are_found_in_any_state_of_the_scene_and_left_as_they_are(tmp_path, threads):
+    done = run_script(ROOT / "tests/scenes/scripts/forces.py", str(tmp_path / "found.json"), threads=threads)
+    assert done.code == 0, done.stderr
+    states = json.loads((tmp_path / "found.json").read_text(encoding="utf-8"))
+    assert len(states) == 5 and len({state["word"] for state in states.values()}) == 1
+    for state in states.values():
+        assert state["memory"] == state["python"] == state["before"]
 
 
 def test_the_check_leaves_vectors_as_they_are(found):
