@@ -28,7 +28,7 @@ from yade import (
 from calibration import generated
 from calibration.campaigns.rock_laws import BOX, CONFINED_AT, PULL, ROCK, SPEED
 from calibration.laboratory.loaded_specimen import SpecimenOutput, SpecimenTest
-from calibration.laboratory.triaxial import GROUPS, NOTICED, TriaxialTest
+from calibration.laboratory.triaxial import GROUPS, NOISE, TriaxialTest
 from rockwear.engines import access, base
 from rockwear.engines.confinement import Membrane
 from rockwear.engines.failure import Failure
@@ -123,8 +123,7 @@ class MomentTest(SpecimenTest):
         return self.v.confinement * math.sin(0.5 * math.pi * part)**2
 
     def strength_measure(self):
-        deviatoric = self.stress - self.v.confinement
-        return deviatoric if deviatoric > NOTICED * self.v.confinement else 0.0
+        return max(self.stress - self.v.confinement, 0.0)
 
     def _choose_time_step(self):
         rock = self.rock
@@ -176,7 +175,7 @@ class MomentTest(SpecimenTest):
         self.platens = Platens(left=self.left.tolist(), right=self.right.tolist(), velocity=self.sign * v.speed)
         self.recorder = Recorder([self.output.log], period=row)
         self.failure = Failure(stress=self.strength_measure, broken=lambda: True, drop=v.drop,
-                               beside=v.confinement, period=row)
+                               beside=v.confinement, noise=NOISE * v.confinement, period=row)
         self._register(*self._further_engines(), self.platens, self.recorder, self.failure)
 
 

@@ -84,8 +84,8 @@ class SpecimenTest(Scene):
     """
 
     sign, output_class = -1, None
-    beside_strength_measure = 0.0
-    """Pa that the specimen bears beside `strength_measure`."""
+    beside_strength_measure = noise = 0.0
+    """Pa that the specimen bears beside `strength_measure`, and by which that may fall without failure."""
 
     def __init__(self, values):
         super().__init__()
@@ -233,7 +233,7 @@ class SpecimenTest(Scene):
                                period=min(row, v.rock_sampling_period))
         self.recorder = Recorder([self.output.log, self.bonds.log], period=row)
         self.failure = Failure(stress=self.strength_measure, broken=lambda: self.bonds.cracks, drop=v.drop,
-                               beside=self.beside_strength_measure, period=row)
+                               beside=self.beside_strength_measure, noise=self.noise, period=row)
         guard = EnergyGuard(work=lambda: sum(self.works().values()), floor=0.5 * rock.masses.sum() * v.speed**2,
                             period=200)
         self._register(self.bonds, *self._further_engines(), self.rock_friction, Separation(self.bonds, period=200),
@@ -277,7 +277,7 @@ class SpecimenOutput(Output):
     @property
     def failed(self):
         """Whether the stress has fallen to `drop` of its peak."""
-        return bool(self.scene.strength_measure() < self.scene.v.drop * self.scene.failure.peak)
+        return bool(self.scene.failure.has_fallen(self.scene.strength_measure()))
 
     def warnings(self):
         found = energy_warnings(self.balances()["energy"][0])

@@ -25,8 +25,8 @@ GROUPS = groups(
 
 HELD = 0.5
 """Part of the confinement by which the mean of what is held may differ without a warning."""
-NOTICED = 0.2
-"""Deviatoric stress over the confinement from which a fall counts as failure: less is noise of the first loading."""
+NOISE = 0.2
+"""Of the confinement: by no more the deviatoric stress falls and rises in the first loading."""
 TRANSITS = 20
 """Least duration of the rise of the pressure, in times that a wave needs through the specimen."""
 
@@ -109,9 +109,13 @@ class TriaxialTest(SpecimenTest):
         """Pa."""
         return self.v.confinement
 
+    @property
+    def noise(self):
+        """Pa."""
+        return NOISE * self.v.confinement
+
     def strength_measure(self):
-        deviatoric = self.stress - self.v.confinement
-        return deviatoric if self.axial and deviatoric > NOTICED * self.v.confinement else 0.0
+        return max(self.stress - self.v.confinement, 0.0) if self.axial else 0.0
 
     def platen_travel(self):
         return super().platen_travel() - 2 * self.v.speed * self.clock if self.axial else 0.0
