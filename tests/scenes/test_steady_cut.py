@@ -62,8 +62,8 @@ def test_the_window_moves_and_the_balance_closes(never):
 
 
 def test_memory_stays_flat_as_the_cut_goes_on(never):
-    """What leaks does so all the time: of the last two quarters of the cut, five thousand steps each in which the window
-    moves on and bonds break, one takes at most 0.15 MB. (Room that is first needed there is taken once.)"""
+    """What leaks does so all the time: of the last two quarters of the cut, five thousand steps each in which the
+    window moves on and bonds break, one takes at most 0.15 MB. (Room that is first needed there is taken once.)"""
     memory = never.summary["memory"]
     begin, middle, end = (np.interp(part * memory["time"][-1], memory["time"], memory["resident"])
                           for part in (0.5, 0.75, 1.0))
