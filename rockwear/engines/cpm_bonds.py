@@ -17,8 +17,7 @@ from yade import CpmPhys, Ig2_Sphere_Sphere_ScGeom, O, ScGeom
 from rockwear.engines.access import contact_of, geometry_functor
 from rockwear.engines.bond_log import BROKEN, INTACT, SEPARATED, BondLog, Crack
 from rockwear.engines.crushing import let_crush, reference_length
-from rockwear.engines.memory import (
-    MARKS, MEMORY, TRIED, Places, check, offset, place, require_memory)
+from rockwear.engines.memory import MARKS, MEMORY, TRIED, Places, check, offset, place, require_memory
 from rockwear.kernels import compiled
 from rockwear.kernels.bond_laws.cohesive import UNBREAKABLE
 
@@ -33,7 +32,8 @@ LOOSE = 0.5
 def _slip_before(law, contact):
     """Work (J) of slip of a bond as if it had come to its displacements on a straight path."""
     phys, bond, work, before = contact.phys, law.initial_state(), 0.0, 0.0
-    un = law.opening(min(phys.omega, 1.0)) if phys.omega else -phys.normalForce.dot(contact.geom.normal) / law.kn
+    un = (compiled.opening(min(phys.omega, 1.0), law.onset, law.gone) if phys.omega else
+          -phys.normalForce.dot(contact.geom.normal) / law.kn)
     ut = phys.epsT.norm() * phys.refLength
     for k in range(1, STRAIGHT + 1):
         _, (Ft,) = law.respond(bond, un * k / STRAIGHT, (ut * k / STRAIGHT,))

@@ -118,10 +118,6 @@ class Cohesive(LinearBondLaw):
         """(J to break the bond in pure tension, J in pure shear: math.inf if it slips for ever)."""
         return 0.5 * self.Rn * self.gone, 0.5 * self.Rt * self.slip_end
 
-    def opening(self, softening):
-        """Largest opening (m) so far of a bond of this omega > 0."""
-        return self.onset / (1.0 - softening * (1.0 - self.onset / self.gone))
-
     @property
     def coupling(self):
         """q in c = (1 - omega)/(1 - q omega): 1 - u0/uf, so that c is the part of the strength, or 0 for that of the
