@@ -30,7 +30,7 @@ BREAKING = {**SAME_PATH, "start_up": 0.004, "wear_acceleration": 7000, "heat": "
 SAMPLING, DEFAULT_SAMPLING = [1, 2, 5, 10, 20, 50, 100], 1
 ROCK_SAMPLING = [1, 2, 4, 8, 16]
 HEAT, DEFAULT_HEAT = [2e-6, 1e-5, 5e-5, 1e-4, 2e-4, 5e-4, 1e-3], 1e-4
-FRACTION, DEFAULT_FRACTION = [0.1, 0.2, 0.4, 0.6, 0.8, 0.9], 0.8
+FRACTION, DEFAULT_FRACTION = [0.1, 0.2, 0.4, 0.6, 0.8, 0.9, 0.95], 0.8
 SEEDS = [1, 2, 3, 4]
 TURNS = 5
 """With and without the Python engines."""
