@@ -141,17 +141,9 @@ class CpmBonds(BondLog):
         self._forget()
 
     def _forget(self):
-        """Other bonds are there now, or have softened."""
-        self.there = self.loose = self.pulled_apart = None
-
-    def _find(self):
-        """Find the bonds that are there, (k,) numbers; loose ones whose slip must be taken out in every step; and those
-        that YADE has broken and that crushing lets touch on."""
-        if self.there is None:
-            self.there = np.flatnonzero(self.status != SEPARATED)
-            self.loose = np.flatnonzero(self.slips_freely & (self.omega > LOOSE) & (self.status == INTACT))
-            self.pulled_apart = (
-                np.flatnonzero((self.status == BROKEN) & (self.omega >= 1.0)).tolist() if self.crushes else [])
+        """Other bonds may be loose now, so that their slip must be taken out in every step, or pulled apart by YADE and
+        touch on, because they are crushed."""
+        self.loose = self.pulled_apart = None
 
     @staticmethod
     def reference_overlap(phys):
@@ -213,19 +205,23 @@ class CpmBonds(BondLog):
             self._sample()
         if step % self.between_looks == 0:
             self.look_at_all()
-        if self.there is None:
-            self._find()
         if len(self.rising):
             compiled.weaken(MEMORY, self.where, self.rising, self.table)
-        if len(self.loose):
-            compiled.let_slip(MEMORY, self.where, self.loose, self.table, self.lengths)
+        if self.may_be_loose:
+            self._let_slip()
         if (step + 1) % self.between_samples == 0:
             self._prepare()
 
+    def _let_slip(self):
+        """Take the slip out of loose bonds."""
+        if self.loose is None:
+            self.loose = np.flatnonzero(self.slips_freely & (self.omega > LOOSE) & (self.status == INTACT))
+        if len(self.loose):
+            compiled.let_slip(MEMORY, self.where, self.loose, self.table, self.lengths)
+
     def _prepare(self):
         """Keep slip and force (N) of the bonds as they are before a step whose work is sampled."""
-        self._find()
-        self.before = compiled.slip_and_force(MEMORY, self.where, self.there, self.active)
+        self.before = compiled.slip_and_force(MEMORY, self.where, self.status, SEPARATED, self.active)
 
     def _sample(self):
         """The work of slip of the last step."""
@@ -235,16 +231,17 @@ class CpmBonds(BondLog):
 
     def look_at_all(self):
         """Bring damage and status of all bonds up to date."""
-        self._find()
+        if self.pulled_apart is None:
+            self.pulled_apart = (
+                np.flatnonzero((self.status == BROKEN) & (self.omega >= 1.0)).tolist() if self.crushes else [])
         for n in self.pulled_apart:
             # Those without cohesion YADE may have erased meanwhile.
             if not self.contacts[n].interaction.isReal:
                 self._separate(n)
-        self._find()
         sums = self.dissipated, self.by_slip
         numbers, self.rising, gone, crushing, softening = compiled.look(
-            MEMORY, self.where, self.there, self.table, float(self.law.hardening), self.crushes, self.omega,
-            self.active, self.crushed, self.lengths, *sums)
+            MEMORY, self.where, self.status, SEPARATED, self.table, float(self.law.hardening), self.crushes,
+            self.omega, self.active, self.crushed, self.lengths, *sums)
         self.energy_crushed += crushing
         self.energy_released += crushing + softening
         if not len(numbers):
@@ -253,8 +250,6 @@ class CpmBonds(BondLog):
         if len(gone):
             self._part(gone)
             numbers = numbers[self.status[numbers] != SEPARATED]
-        if self.may_be_loose:
-            self._forget()
         # Where every step is sampled, the slip of the next one is in its sample.
         spent, work = compiled.relieve(MEMORY, self.where, numbers, self.table, self.between_looks > 1, self.omega,
                                        self.lengths, *sums)
@@ -262,6 +257,7 @@ class CpmBonds(BondLog):
         for n in spent.tolist():
             self._log(n)
             self.status[n] = BROKEN
+        self.loose = None
 
     def _begin(self, numbers):
         """These bonds are found to have slipped or softened."""

@@ -44,31 +44,28 @@ class RockContacts(Engine):
     def connect(self):
         self.layout, self.body_list = kernel_layout(), list_of_bodies()
         self.motion.connect()
-        self.held = {}
+        self.held, self.places = {}, np.zeros(0, np.int64)
         self.find_contacts()
 
     def find_contacts(self):
         """Find the contacts between rock particles that are no bonds, and the pairs that may touch before the collider
-        runs again or a bond parts."""
+        runs again or a bond parts: their `places` (k,) in memory."""
         self.collider = yade_engine(InsertionSortCollider)
         self.seen = self.collider.numAction
         self.bonds.parted.clear()
-        places, pairs = self._possible()
-        # What Python holds keeps its place in memory.
-        known = list(map(self.held.get, places))
-        for k, interaction in enumerate(known):
-            # YADE would end where it is asked for contacts of an erased body.
-            if interaction is None and all(O.bodies[body] for body in pairs[k]):
-                known[k] = contact_of(*pairs[k])
-        self.held = {where: interaction for where, interaction in zip(places, known) if interaction is not None}
-        self._list()
-
-    def _possible(self):
-        """Places in memory and bodies [(first, second)] of all pairs of rock particles that are no bonds, ordered by
-        the bodies: a loaded scene has them in another order."""
         found = possible_contacts(self.particles, bond_classes())
-        found = found[np.lexsort((found[:, 2], found[:, 1]))].tolist()
-        return [row[0] for row in found], [(first, second) for _, first, second in found]
+        # In the order of their bodies: a loaded scene has them in another order.
+        places, new, gone = compiled.changes(found, self.particles, self.places)
+        # What Python holds keeps its place in memory: a place that is known is the contact that it was.
+        for where in gone.tolist():
+            del self.held[where]
+        for where, *pair in found[new].tolist():
+            # YADE would end where it is asked for contacts of an erased body.
+            if all(O.bodies[body] for body in pair):
+                self.held[where] = contact_of(*pair)
+        if len(self.held) < len(places):
+            places = places[[where in self.held for where in places.tolist()]]
+        self.places = places
 
     def _keep_up(self):
         """Bring `possible` up to date, where the collider has run or bonds have parted since."""
@@ -79,17 +76,22 @@ class RockContacts(Engine):
 
     def _add_parted(self):
         """Add the pairs of bonds that have parted, where YADE still holds them possible and no new bond is there."""
+        added = []
         for n in self.bonds.parted:
             pair = tuple(self.bonds.pairs[n].tolist())
             if self.bonds.status[n] == SEPARATED and all(O.bodies[i] for i in pair) and O.interactions.has(*pair):
                 interaction = contact_of(*pair)
-                self.held[place(interaction)] = interaction
+                where = place(interaction)
+                if where not in self.held:
+                    self.held[where] = interaction
+                    added.append(where)
         self.bonds.parted.clear()
-        self._list()
+        self.places = np.concatenate([self.places, np.array(added, np.int64)])
 
-    def _list(self):
-        self.possible = list(self.held.values())
-        self.places = np.fromiter(self.held, np.int64, len(self.held))
+    @property
+    def possible(self):
+        """The pairs that may be in contact, in the order of `places`."""
+        return [self.held[where] for where in self.places.tolist()]
 
     @property
     def contacts(self):

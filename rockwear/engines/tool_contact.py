@@ -81,10 +81,13 @@ class ToolContact(Engine):
         self._keep([contact for contact in self.possible if contact.piece in self.tool.body_of])
 
     def _keep(self, contacts):
-        rows, seconds = {contact[1:3]: row for contact, row in zip(self.possible, self.before)}, self.touching()
-        pairs = [contact[1:3] for contact in contacts]
-        self.before = np.array([rows.get(pair, np.zeros(4)) for pair in pairs]).reshape(-1, 4)
-        self.seconds, self.touched = np.array([seconds.pop(pair, 0.0) for pair in pairs]), seconds
+        known = {contact[1:3]: k for k, contact in enumerate(self.possible)}
+        from_row = [known.get(contact[1:3], -1) for contact in contacts]
+        # The last row is that of contacts that are not known.
+        self.before = np.append(self.before, np.zeros((1, 4)), axis=0)[from_row]
+        seconds = self.touching()
+        self.seconds = np.array([seconds.pop(contact[1:3], 0.0) for contact in contacts])
+        self.touched = seconds
         # What Python holds keeps its place in memory.
         self.possible = contacts
         self.places = np.array([place(contact.interaction) for contact in contacts], np.int64)

@@ -117,12 +117,13 @@ def let_slip(memory, where, numbers, laws, lengths):
 
 
 @compiled
-def slip_and_force(memory, where, there, active):
-    """Of those of the bonds `there` (k,) that are `active` (m,) bool: numbers (l,), slip, a strain, and shear force (N)
-    (l, 6)."""
-    numbers, found, count = np.empty(len(there), np.int64), np.empty((len(there), 6)), 0
-    for n in there:
-        if active[n]:
+def slip_and_force(memory, where, status, separated, active):
+    """Of the bonds that are `active` (m,) bool and not `separated` by their status (m,): numbers (l,), slip, a strain,
+    and shear force (N) (l, 6)."""
+    most = np.sum(active)
+    numbers, found, count = np.empty(most, np.int64), np.empty((most, 6)), 0
+    for n in range(len(status)):
+        if active[n] and status[n] != separated:
             numbers[count] = n
             for along in range(3):
                 found[count, along] = memory[where[SLIPPED, n] + along]
@@ -196,17 +197,22 @@ def soften(n, before, now, laws, dissipated):
 
 
 @compiled
-def look(memory, where, there, laws, hardening, crushes, omega, active, strains, lengths, dissipated, by_slip):
-    """Which of the bonds `there` (k,) softened or slipped since the last look; harden those that crushed.
+def look(memory, where, status, separated, laws, hardening, crushes, omega, active, strains, lengths, dissipated,
+         by_slip):
+    """Which of the bonds softened or slipped since the last look, without those `separated` by their status (m,);
+    harden those that crushed.
 
     omega: (m,), as of the last look, strains: (m,), YADE's plastic ones, and lengths: (m,) m, are brought up to date;
     active: (m,), whether they had slipped or softened by then; crushes: whether bonds crush, hardening: their h. Works
     are added to the sums (m,) J. -> numbers (l,); of those whose damage rose and that hold on by a coupled cohesion; of
     those that YADE has broken; and J of crushing and of softening.
     """
-    numbers, count, crushing, softening = np.empty(len(there), np.int64), 0, 0.0, 0.0
-    rising, risen, gone, broken = np.empty(len(there), np.int64), 0, np.empty(len(there), np.int64), 0
-    for n in there:
+    most = len(status)
+    numbers, count, crushing, softening = np.empty(most, np.int64), 0, 0.0, 0.0
+    rising, risen, gone, broken = np.empty(most, np.int64), 0, np.empty(most, np.int64), 0
+    for n in range(most):
+        if status[n] == separated:
+            continue
         now = memory[where[OMEGA, n]]
         if (now != omega[n] or not vanishes(read(memory, where[SLIPPED, n]))
                 or active[n] and vanishes(read(memory, where[SHEAR_FORCE, n]))):
@@ -358,6 +364,18 @@ def ends_of(words, layout, contact):
 def is_there(words, bodies, body):
     """Whether a body has not been erased. bodies: place of the pointer to the list of them."""
     return words[pointed(words[bodies]) + 2 * body] != 0
+
+
+@compiled
+def positions(memory, words, layout, bodies, count):
+    """(count, 3) m of the bodies 0..count-1, nan of one that has been erased."""
+    found, one = np.full((count, 3), np.nan), pointed(words[bodies])
+    for body in range(count):
+        if words[one + 2 * body] != 0:
+            state = pointed(words[pointed(words[one + 2 * body]) + layout[STATE]])
+            for along in range(3):
+                found[body, along] = memory[state + layout[POSITION] + along]
+    return found
 
 
 @compiled
@@ -533,6 +551,23 @@ def between_rock(words, layout, contacts, particles, others):
             found[count, 0], found[count, 1], found[count, 2] = contact, first, second
             count += 1
     return found[:count].copy()
+
+
+@compiled
+def changes(found, particles, held):
+    """Of contacts (k, 3), places and bodies, below `particles`: the places (k,) in the order of their bodies, which
+    (l,) are not among the places `held` (m,), and those of the held that are not found."""
+    before = np.sort(held)
+    there, new, count = np.zeros(len(before), np.bool_), np.empty(len(found), np.int64), 0
+    for k in range(len(found)):
+        at = np.searchsorted(before, found[k, 0])
+        if at < len(before) and before[at] == found[k, 0]:
+            there[at] = True
+        else:
+            new[count] = k
+            count += 1
+    order = np.argsort(found[:, 1] * particles + found[:, 2])
+    return found[order, 0].copy(), new[:count].copy(), before[~there].copy()
 
 
 @compiled

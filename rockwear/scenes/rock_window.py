@@ -2,7 +2,7 @@
 import numpy as np
 from yade import O, Quaternion, Vector3
 
-from rockwear.engines.access import FIXED, IN_PLANE, rock_states
+from rockwear.engines.access import FIXED, IN_PLANE, rock_positions
 from rockwear.engines.bond_log import INTACT
 from rockwear.model.rock_mass import WHOLE
 from rockwear.scenes import yade_scene
@@ -81,14 +81,14 @@ class RockWindow:
 
     def _fits(self):
         rock = self.rock
-        misfit = rock.misfit(rock_states(rock)[:, :2], self.scene.bonds.status == INTACT)
+        misfit = rock.misfit(rock_positions(rock), self.scene.bonds.status == INTACT)
         return misfit <= FITS * rock.height
 
     def advance(self, distance=0.0):
         """Move on by a slab; distance: m that the tool has gone."""
         scene, rock, bonds = self.scene, self.rock, self.scene.bonds
         scene.close_books()
-        positions, intact = rock_states(rock)[:, :2], bonds.status == INTACT
+        positions, intact = rock_positions(rock), bonds.status == INTACT
         if self.book:
             self.book(positions=positions, intact=intact, distance=distance)
         if self.sides:
@@ -137,7 +137,7 @@ class RockWindow:
             return
         rock = self.rock
         left, right = (part[~rock.anchored[part]] for part in rock.at_ends())
-        y = rock.strip.unroll(rock_states(rock)[left, :2])[:, 1]
+        y = rock.strip.unroll(rock_positions(rock)[left])[:, 1]
         left = left[y < self.held_below]
         # In a low window there may be none.
         if len(left):
@@ -152,7 +152,7 @@ class RockWindow:
         count = len(numbers)
         # Springs are at rest in untouched rock, unless a crack has moved it.
         places = rock.places
-        moved = (rock_states(rock)[:, :2] - places)[numbers]
+        moved = (rock_positions(rock) - places)[numbers]
         moved[np.linalg.norm(moved, axis=1) > WHOLE * rock.height] = 0.0
         normals = rock.strip.turned(np.tile(normal, (count, 1)), rock.strip.unroll(places[numbers]))
         self.boundary.hold(numbers, normals, areas, np.full(count, distance), moved)

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 from yade import O
 
-from rockwear.engines.access import rock_states
+from rockwear.engines.access import rock_positions
 from rockwear.engines.bond_log import INTACT
 from rockwear.kernels.checks import require
 from rockwear.kernels.cut_sizes import cut_sizes
@@ -185,7 +185,7 @@ class SteadyCut(Programme):
     def _record(self):
         """(groove (k, 2), chips (l, 6)) up to now, without what lies within a depth of cut of the tip."""
         behind = self.origin[0] + self.distance - self.scene.depth_of_cut
-        groove, chips = self.record.whole(positions=rock_states(self.scene.rock)[:, :2], distance=self.distance,
+        groove, chips = self.record.whole(positions=rock_positions(self.scene.rock), distance=self.distance,
                                           behind=behind, intact=self.scene.bonds.status == INTACT)
         return np.array(groove).reshape(-1, len(GROOVE)), np.array(chips).reshape(-1, len(CHIPS))
 
