@@ -1,18 +1,17 @@
-"""Speed against error of the main scene: cost and error of each numerical parameter, and the choice of its default.
+"""Speed against error: cost and error of each numerical parameter, and the choice of its default.
 
     python3 -m calibration.benchmarks DIR        (make bench)
 
-Parameters of yade_scripts/tooth_cycles.py, each against its finest setting on otherwise the same run, two runs at a
-time; the cost of all Python engines together comes from calibration/benchmarks/overhead.py, with and without them in
-turns. Sampling and heat do not act back on the motion while no particle is removed (wear_acceleration 100 here), so
-their runs follow one trajectory and differ by the parameter alone. Another time step changes which bond breaks first,
-and so the whole trajectory: its error is measured on rock that cannot break, beside the scatter of the breaking rock
-over seeds. Writes bench.md (tables), bench.json, figures and provenance.json into DIR.
+The steady cut of `make run` tells what the Python engines cost and what their samples miss (steady_cost.py). Heat and
+time step are those of yade_scripts/tooth_cycles.py, each against its finest setting on otherwise the same run, two runs
+at a time. Heat does not act back on the motion while no particle is removed (wear_acceleration 100 here), so its runs
+follow one trajectory. Another time step changes which bond breaks first, and so the whole trajectory: its error is
+measured on rock that cannot break. (What it moves in a steady cut campaigns.steady_cut says, over packings.) Writes
+bench.md (tables), bench.json, figures and provenance.json into DIR.
 """
 import json
 import sys
 import time
-from statistics import mean, median, stdev
 
 import matplotlib
 import numpy as np
@@ -26,19 +25,12 @@ from rockwear.report import plots
 
 SAME_PATH = {"wear_acceleration": 100, "start_up": 0.002, "cycles": 0, "snapshot_period": 1}
 UNBREAKABLE = {**SAME_PATH, "start_up": 2e-4, "Rn": 1e12, "Rt": 1e12, "approach": 1e-4}
-BREAKING = {**SAME_PATH, "start_up": 0.004, "wear_acceleration": 7000, "heat": "false"}
-SAMPLING, DEFAULT_SAMPLING = [1, 2, 5, 10, 20, 50, 100], 1
-ROCK_SAMPLING = [1, 2, 4, 8, 16]
 HEAT, DEFAULT_HEAT = [2e-6, 1e-5, 5e-5, 1e-4, 2e-4, 5e-4, 1e-3], 1e-4
 FRACTION, DEFAULT_FRACTION = [0.1, 0.2, 0.4, 0.6, 0.8, 0.9, 0.95], 0.8
-SEEDS = [1, 2, 3, 4]
-TURNS = 5
-"""With and without the Python engines."""
-VARIANTS = {"default": {}, "time step 0.3": {"time_step_fraction": 0.3}, "rock graded threefold": {"grading_factor": 3}}
 
 
 def run_all(folder, jobs):
-    """{name: summary, with the worn depth by tool particle} of runs of the main scene {name: values}, two at a time.
+    """{name: summary, with the worn depth by tool particle} of runs of the test tooth {name: values}, two at a time.
 
     Finished runs in the folder are kept. Raises RunFailed.
     """
@@ -59,34 +51,19 @@ def warming(summary):
     return value(summary, "tool_temperature_max") - summary["parameters"]["tool_temperature"]
 
 
-def cost(summary):
-    """Wall time of all Python in the loop over that of YADE's own engines."""
-    wall = summary["wall_time"]
-    return (wall["loop"] - wall["yade"]) / wall["yade"]
-
-
 def rows_against_finest(runs, parameter):
-    """[{parameter, cost, errors}] of runs from the finest setting, the reference, to the coarsest."""
+    """[{parameter, loop_seconds, errors}] of runs from the finest setting, the reference, to the coarsest."""
     reference = next(iter(runs.values()))
     rows = []
     for summary in runs.values():
         depth, exact = summary["worn_depth"], reference["worn_depth"]
         rows.append({
-            parameter: summary["parameters"][parameter], "cost": cost(summary),
-            "loop_seconds": summary["wall_time"]["loop"],
+            parameter: summary["parameters"][parameter], "loop_seconds": summary["wall_time"]["loop"],
             "wear": abs(value(summary, "worn_volume") / value(reference, "worn_volume") - 1),
             "distribution": float(np.abs(depth - exact).sum() / exact.sum()),
             "tip temperature": abs(warming(summary) / warming(reference) - 1) if warming(reference) > 0 else 0.0,
             "energy balance": energy_residual(summary)})
     return rows
-
-
-def over_seeds(summaries):
-    """Mean and scatter of the breaking cut over packings."""
-    forces = [value(s, "mean_cutting_force") for s in summaries]
-    return {"mean_cutting_force": mean(forces), "scatter": stdev(forces),
-            "loop_seconds": mean(s["wall_time"]["loop"] for s in summaries),
-            "energy_residual": max(map(energy_residual, summaries))}
 
 
 def energy_residual(summary):
@@ -95,8 +72,8 @@ def energy_residual(summary):
     return abs(balance["residual"] / balance["tool_work"])
 
 
-def draw(axes, rows, parameter, default, names, unit, right="cost", right_label="Python engines / YADE"):
-    """Errors over the parameter, the cost on the other axis, the default marked."""
+def draw(axes, rows, parameter, default, names, unit):
+    """Errors over the parameter, the time of the run on the other axis, the default marked."""
     x = [row[parameter] for row in rows]
     for name in names:
         axes.loglog(x, np.maximum([row[name] for row in rows], 1e-6), "o-", label=name)
@@ -106,33 +83,18 @@ def draw(axes, rows, parameter, default, names, unit, right="cost", right_label=
     axes.set_xlabel(f"{parameter.replace('_', ' ')} [{unit}]")
     axes.set_ylabel("error, relative")
     other = axes.twinx()
-    other.plot(x, [row[right] for row in rows], "s--", color="tab:red", ms=4)
-    other.set_ylabel(right_label, color="tab:red")
+    other.plot(x, [row["loop_seconds"] for row in rows], "s--", color="tab:red", ms=4)
+    other.set_ylabel("wall time of the run, s", color="tab:red")
     other.set_ylim(bottom=0)
     axes.legend(fontsize=8, loc="best")
-
-
-def in_words(overhead):
-    """What all Python engines cost."""
-    low, middle, high = (100 * part for part in overhead["overhead"])
-    return (f"All Python engines at the defaults: {middle:.1f} % ({low:.1f} to {high:.1f}) of YADE's own step of "
-            f"{1e3 * median(overhead['seconds_a_step']['dead']):.2f} ms")
 
 
 def tables(result):
     """All tables, as lines of Markdown."""
     lines = ["Test tooth of [Rojek 2003, 9.2]; errors against the first row of each table.", ""]
-    for name in ("sampling", "rock sampling", "heat", "step"):
-        rows = result[name]
+    for rows in result.values():
         lines += generated.table([key.replace("_", " ") for key in rows[0]],
                                  [[f"{number:.3g}" for number in row.values()] for row in rows])
-    lines += [in_words(result["overhead"]) + f": with and without them in {TURNS} turns, a process for each, from the "
-              "same instant of the same cut; medians, and the range of the ratio of a turn.", "",
-              f"Breaking rock over packings {', '.join(map(str, SEEDS))}, 4 ms:", "", *generated.table(
-                  ["variant", "mean cutting force, kN/m", "scatter, kN/m", "wall time, s", "largest energy residual"],
-                  [[name, f"{1e-3 * v['mean_cutting_force']:.0f}", f"{1e-3 * v['scatter']:.0f}",
-                    f"{v['loop_seconds']:.0f}", f"{100 * v['energy_residual']:.1f} %"]
-                   for name, v in result["seeds"].items()])]
     return lines
 
 
@@ -140,18 +102,6 @@ def measure(script, folder):
     """Run a YADE script of calibration/benchmarks. -> the JSON file that it writes into `folder`."""
     run_script(f"calibration/benchmarks/{script}.py", folder)
     return json.loads((folder / f"{script}.json").read_text(encoding="utf-8"))
-
-
-def engine_cost(folder):
-    """{"seconds_a_step": {"alive" and "dead" engines: [s]}, "overhead": [least, median, largest of the turns]}."""
-    found = {"alive": [], "dead": []}
-    for turn in range(TURNS):
-        for engines, seconds in found.items():
-            place = folder / f"overhead/{turn}-{engines}"
-            run_script("calibration/benchmarks/overhead.py", place, ["--engines", engines])
-            seconds.append(json.loads((place / "overhead.json").read_text(encoding="utf-8"))["seconds_a_step"])
-    parts = [alive / dead - 1 for alive, dead in zip(*found.values())]
-    return {"seconds_a_step": found, "overhead": [min(parts), median(parts), max(parts)]}
 
 
 def law_costs(folder):
@@ -168,30 +118,23 @@ def law_costs(folder):
 
 
 def drawn(result):
-    """The figure: errors and cost of sampling, heat and time step."""
-    figure, axes = plots.canvas(15, 4.2, 1, 3)
-    draw(axes[0], result["sampling"], "sampling_period", DEFAULT_SAMPLING,
-         ["wear", "distribution", "tip temperature", "energy balance"], "steps")
-    draw(axes[1], result["heat"], "heat_period", DEFAULT_HEAT, ["wear", "tip temperature"], "s")
-    draw(axes[2], result["step"], "time_step_fraction", DEFAULT_FRACTION,
-         ["specific energy", "wear", "tip temperature", "energy balance"], "of the critical step", "loop_seconds",
-         "wall time of the run, s")
-    figure.suptitle(f"Test tooth: error against cost. {in_words(result['overhead'])}")
+    """The figure: errors and cost of heat and time step."""
+    figure, axes = plots.canvas(11, 4.2, 1, 2)
+    draw(axes[0], result["heat"], "heat_period", DEFAULT_HEAT, ["wear", "tip temperature"], "s")
+    draw(axes[1], result["step"], "time_step_fraction", DEFAULT_FRACTION,
+         ["specific energy", "wear", "tip temperature", "energy balance"], "of the critical step")
+    figure.suptitle("Test tooth: error against cost")
     return figure
 
 
 def jobs():
-    """{name: values} of all runs of the main scene."""
-    variants = {f"seed-{seed}-{name}": {**BREAKING, "seed": seed, **values}
-                for name, values in VARIANTS.items() for seed in SEEDS}
-    return {**{f"sampling-{n}": {**SAME_PATH, "sampling_period": n} for n in SAMPLING},
-            **{f"rock-{n}": {**SAME_PATH, "rock_sampling_period": n} for n in ROCK_SAMPLING},
-            **{f"heat-{p:g}": {**SAME_PATH, "heat_period": p} for p in HEAT},
-            **{f"step-{f:g}": {**UNBREAKABLE, "time_step_fraction": f} for f in FRACTION}, **variants}
+    """{name: values} of all runs of the test tooth."""
+    return {**{f"heat-{p:g}": {**SAME_PATH, "heat_period": p} for p in HEAT},
+            **{f"step-{f:g}": {**UNBREAKABLE, "time_step_fraction": f} for f in FRACTION}}
 
 
-def evaluate(runs, overhead):
-    """{table: its rows} of all runs, with the overhead of the Python engines."""
+def evaluate(runs):
+    """{table: its rows} of all runs."""
     def group(prefix):
         return {name: summary for name, summary in runs.items() if name.startswith(prefix)}
 
@@ -199,15 +142,12 @@ def evaluate(runs, overhead):
     exact = value(runs["step-0.1"], "specific_energy")
     for row, summary in zip(step, group("step-").values()):
         row["specific energy"] = abs(value(summary, "specific_energy") / exact - 1)
-    return {"sampling": rows_against_finest(group("sampling-"), "sampling_period"),
-            "rock sampling": rows_against_finest(group("rock-"), "rock_sampling_period"),
-            "heat": rows_against_finest(group("heat-"), "heat_period"), "step": step, "overhead": overhead,
-            "seeds": {name: over_seeds([runs[f"seed-{seed}-{name}"] for seed in SEEDS]) for name in VARIANTS}}
+    return {"heat": rows_against_finest(group("heat-"), "heat_period"), "step": step}
 
 
 def errors_against_cost(folder):
-    """Run the main scene, draw speed_against_error.png, write bench.json. -> lines of Markdown."""
-    result = evaluate(run_all(folder / "runs", jobs()), engine_cost(folder))
+    """Run the test tooth, draw speed_against_error.png, write bench.json. -> lines of Markdown."""
+    result = evaluate(run_all(folder / "runs", jobs()))
     with matplotlib.rc_context(plots.STYLE):
         drawn(result).savefig(folder / "speed_against_error.png")
     (folder / "bench.json").write_text(json.dumps(result, indent=1), encoding="utf-8")

@@ -3,8 +3,7 @@
     PYTHONPATH=. yade -n -x -j1 calibration/benchmarks/steady_engines.py --out DIR [--name value ...]
 
 The cut of `make run`, from where its tool has gone BEGIN. Clocks say what YADE and the engines cost over the next TIMED
-of way. (Not turns with and without them from a saved state: each time that YADE loads one its steps take longer,
-up to twice as long.) Then the same steps follow twice, with the defaults and with every step sampled: samples do not
+of way. Then the same steps follow twice, with the defaults and with every step sampled: samples do not
 act back on the motion, so the difference is theirs. Writes DIR/steady_engines.json.
 calibration/benchmarks/steady_cost.py runs it.
 """
@@ -17,16 +16,13 @@ from pathlib import Path
 import numpy as np
 from yade import O, utils
 
+from calibration.benchmarks.make_run import BEGIN, CUT
 from rockwear.engines import base
 from rockwear.run import parameters, servers
 from rockwear.run.main import COMMON
 from rockwear.scenes import steady_cut
 
-CUT = dict(rock="crushing_sandstone", discs_per_depth=8, depth_of_cut=2e-3, tip_radius=2e-4, velocity=8.0,
-           cut_length=0.06, rake=-5.0, clearance=5.0, tool_kn=5e9, tool_kt=5e9, contact_damping=0.1,
-           time_step_fraction=0.9, heat=True, wear_acceleration=300)
-"""That of `make run`, with the defaults of its script."""
-BEGIN, TIMED = 0.006, 0.014
+TIMED = 0.014
 """m."""
 SAMPLED = 6000
 """Steps of the two runs that are compared."""
