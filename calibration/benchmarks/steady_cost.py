@@ -59,7 +59,10 @@ def table(found, alive_and_dead):
             "", *generated.table(["sum", "difference", "over the tool's work"], errors),
             f"The distribution of wear differs by {100 * found['distribution']:.2f} %. The residual of energy is "
             f"{100 * sampled['residual'] / sampled['tool_work']:+.2f} % of the tool's work with the defaults and "
-            f"{100 * exact['residual'] / exact['tool_work']:+.2f} % with every step sampled.", ""]
+            f"{100 * exact['residual'] / exact['tool_work']:+.2f} % with every step sampled.", "",
+            f"The critical step of the bonds that are intact after {found['steps']} steps is "
+            f"{found['critical_steps']['intact']:.3f} of that of untouched rock, that of a disc under the tool "
+            f"{found['critical_steps']['under the tool']:.3f}.", ""]
 
 
 def curve(folder):

@@ -18,6 +18,9 @@ from yade import O, utils
 
 from calibration.benchmarks.make_run import BEGIN, CUT
 from rockwear.engines import base
+from rockwear.engines.access import rock_positions
+from rockwear.engines.bond_log import INTACT
+from rockwear.kernels.stability import critical_time_step
 from rockwear.run import parameters, servers
 from rockwear.run.main import COMMON
 from rockwear.scenes import steady_cut
@@ -73,6 +76,16 @@ def timed(scene):
             "seconds": {**seconds, "runners and canonical points": total - yade - float(engines.sum())}}
 
 
+def critical_steps(scene):
+    """Critical steps over that of untouched rock: of the bonds that are intact now, and of rock under the tool."""
+    rock, intact = scene.rock, scene.bonds.status == INTACT
+    kn, kt = rock.stiffness()
+    left = critical_time_step(positions=rock_positions(rock), radii=rock.radii, masses=rock.masses,
+                              inertias=rock.inertias, bonds=rock.pairs[intact], kn=kn[intact], kt=kt[intact],
+                              fixed=np.flatnonzero(rock.fixed))
+    return {"intact": left / scene.bonded_step, "under the tool": scene.contact_step / scene.bonded_step}
+
+
 def main():
     """Measure and write."""
     servers.close()
@@ -83,14 +96,14 @@ def main():
     scene.build()
     while scene.programme.distance < BEGIN:
         scene.run_chunk()
-    cost, state = timed(scene), scene.state()
+    cost, state, steps = timed(scene), scene.state(), critical_steps(scene)
     scene.save(folder, folder)
     found, depth = sampled(scene, state, folder)
     exact, exact_depth = sampled(scene, state, folder, every_step)
+    off = float(np.abs(depth - exact_depth).sum() / exact_depth.sum())
     (folder / "steady_engines.json").write_text(json.dumps({
-        **cost, "discs": scene.rock.count, "bonds": len(scene.rock.pairs), "sampled": SAMPLED,
-        "found": found, "exact": exact, "distribution": float(np.abs(depth - exact_depth).sum() / exact_depth.sum())},
-        indent=1), encoding="utf-8")
+        **cost, "discs": scene.rock.count, "bonds": len(scene.rock.pairs), "sampled": SAMPLED, "critical_steps": steps,
+        "found": found, "exact": exact, "distribution": off}, indent=1), encoding="utf-8")
     os._exit(0)
 
 

@@ -15,6 +15,8 @@ CUT = dict(depth_of_cut=5e-3, discs_per_depth=16, rake=-5.0, velocity=8.0, snaps
 SHORT, LONG = 0.03, 0.2
 """m of way with small discs, and with those by which causes are told: 40 depths, so that three packings together know
 the mean force to a tenth."""
+HALF = dict(cut_length=0.1)
+"""Of what is to change little."""
 SLOWER = dict(velocity=4.0, snapshot_period=1e-3)
 """Half as fast, with as many pictures over the way."""
 FLATS_DEPTH = 1.25e-3
@@ -89,6 +91,11 @@ CHANGES = {
     "damping 30000 1/s": dict(background_damping=3e4),
     "grains not damped": dict(grain_quality=0.0),
     "stiffer tool contact, step 0.8": dict(tool_kn=1e10, tool_kt=1e10, contact_damping=0.2, time_step_fraction=0.8),
+    "rock not graded": dict(HALF, grading_factor=1.0),
+    "step 0.45": dict(HALF, time_step_fraction=0.45),
+    "step 0.95": dict(HALF, time_step_fraction=0.95),
+    "2 m/s, cut 4 times as fast": dict(HALF, velocity=2.0, time_scale=4.0, snapshot_period=2e-3),
+    "wear 300 times as fast": dict(HALF, wear_acceleration=300.0),
 }
 """How else the rock of eight discs is cut: a seventh of the cost of sixteen."""
 RAKES = "rake -15°", "rake 15°"
@@ -99,7 +106,7 @@ CUTS = {**{f"{EIGHT}, {name}": change for name, change in CHANGES.items()},
 """How else the rock that a case begins with is cut, or that of the base."""
 SETTINGS = BASE, FINEST, LOW, FOUR, EIGHT, *(f"{EIGHT}, {name}" for name in (
     LOW, "window 8 depths high", "window 1.5 times as long", "window 5 depths ahead", "boundary fixed",
-    "stiffer tool contact, step 0.8"))
+    "stiffer tool contact, step 0.8", "rock not graded", "step 0.45", "step 0.95"))
 """Cases that cut the same rock with the same tool: they differ in what they cost. (A slower one is another cut.)"""
 OF_THE_CUT = {"discs_per_depth", *at_depth(1.0)}
 """Parameters of a rock of ROCKS that the laboratory does not take."""
