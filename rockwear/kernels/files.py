@@ -1,8 +1,11 @@
 """Files that are whole or not there, and whose errors name them."""
 import errno
+import io
 import os
 import shutil
 from contextlib import contextmanager
+
+import numpy as np
 
 
 @contextmanager
@@ -34,3 +37,14 @@ def replacing(path):
         except OSError:
             temporary.unlink(missing_ok=True)
             raise
+
+
+def write_arrays(path, arrays):
+    """Write {name: array} as a compressed .npz file that is whole or not there. An OSError names `path`.
+
+    It is made in memory: where numpy's writer meets a full disk, it leaves an error of its own behind.
+    """
+    made = io.BytesIO()
+    np.savez_compressed(made, **arrays)
+    with replacing(path) as file:
+        file.write(made.getbuffer())

@@ -11,8 +11,11 @@ from pathlib import Path
 import numpy as np
 
 from rockwear.kernels.checks import ParameterError
+from rockwear.kernels.files import require_room
 
 FORMAT = "rockwear checkpoint 4"
+HEADER = 1000
+"""Bytes that an array takes in a file beside its numbers, at most."""
 
 
 class CheckpointError(ParameterError):
@@ -60,7 +63,10 @@ def save(folder, *, identity, state, write_scenes):
     directory.mkdir()
     try:
         write_scenes(directory)
-        np.savez(directory / "state.npz", **dict(_flatten(state)))
+        arrays = dict(_flatten(state))
+        # On a full disk numpy's writer leaves an error of its own behind.
+        require_room(directory, sum(array.nbytes + HEADER for array in arrays.values()))
+        np.savez(directory / "state.npz", **arrays)
         _check_whole(directory)
         files = {file.name: digest(file) for file in sorted(directory.iterdir())}
         pointer = folder / "current.json.new"

@@ -20,7 +20,7 @@ from rockwear.engines import base
 from rockwear.engines.base import RunEnded
 from rockwear.engines.history import write_table
 from rockwear.kernels.checks import ParameterError, require
-from rockwear.kernels.files import naming, replacing
+from rockwear.kernels.files import naming, replacing, write_arrays
 from rockwear.kernels.parameter import Group, Parameter, above_zero, file, flag, text
 
 COMMON = Group("output", (
@@ -169,8 +169,7 @@ class Run:
             for old in FILES:
                 (self.folder / old).unlink(missing_ok=True)
             (self.folder / "snapshots").mkdir()
-            with replacing(self.folder / "model.npz") as file:
-                np.savez_compressed(file, **self.scene.output.model())
+            write_arrays(self.folder / "model.npz", self.scene.output.model())
         (self.folder / "checkpoint").mkdir(exist_ok=True)
         if not self.scene.recorder.history.open(self.folder / "checkpoint" / HISTORY, self.folder / "history.csv"):
             raise checkpoint.CheckpointError(self.folder / "checkpoint", f"whole: {HISTORY} is cut short")
@@ -278,8 +277,7 @@ class Run:
             sys.stdout = open(os.devnull, "w", encoding="utf-8")
 
     def _snapshot(self):
-        with replacing(self.folder / "snapshots" / f"{self.snapshots:04d}.npz") as file:
-            np.savez_compressed(file, **self.scene.output.snapshot())
+        write_arrays(self.folder / "snapshots" / f"{self.snapshots:04d}.npz", self.scene.output.snapshot())
         if self.values["vtk"]:
             self.scene.output.write_vtk(self.folder / "vtk", self.snapshots)
         self.memory.append((self.scene.time, resident_memory()))

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from rockwear.engines.history import History, write_table
-from rockwear.kernels.files import replacing
+from rockwear.kernels import files
+from rockwear.kernels.files import replacing, write_arrays
 from tests.running import ROOT
 
 HEADER = ["time [s]", "force [N/m]"]
@@ -92,3 +93,26 @@ def test_a_full_disk_names_the_file(tmp_path):
             raise OSError(errno.ENOSPC, "No space left on device")
     assert [path.name for path in tmp_path.glob("whole*")] == ["whole"]
     assert (tmp_path / "whole").read_text(encoding="utf-8") == "old"
+
+
+def test_arrays_on_a_full_disk_leave_nothing_and_say_it_once(tmp_path, monkeypatch, recwarn):
+    """numpy's own writer, given such a file, says it again from where it is deleted."""
+    class Full:
+        def __init__(self, *_):
+            pass
+
+        def __enter__(self):
+            return self
+
+        def __exit__(self, *_):
+            pass
+
+        def write(self, _):
+            raise OSError(errno.ENOSPC, "No space left on device")
+
+    write_arrays(tmp_path / "one.npz", {"a": np.arange(3.0)})
+    monkeypatch.setattr(files, "open", Full, raising=False)
+    with pytest.raises(OSError, match="No space left on device: '.*one.npz'"):
+        write_arrays(tmp_path / "one.npz", {"a": np.zeros(3)})
+    monkeypatch.undo()
+    assert np.load(tmp_path / "one.npz")["a"].tolist() == [0.0, 1.0, 2.0] and not recwarn
