@@ -56,7 +56,8 @@ def write(folder, others):
     if needed := lengths_needed(found):
         lines += ["", "## How long a cut has to be", "", "How far the mean force of one cut is off, by the scatter of "
                   f"packings and by its own record, and how many depths of cut tell it to {100 * ACCURACY:g} %.", "",
-                  *generated.table(["", "depths of one cut", "packings", "record", "depths needed"], needed)]
+                  *generated.table(["", "depths of one cut", "packings", "record", "depths needed", "minutes"],
+                                   needed)]
     if judged := envelope(found):
         lines += ["", "## Against the envelope", "",
                   *generated.table(["cut", "", "range", "basis", "ours", "verdict"], [*judged, *relations(found)])]

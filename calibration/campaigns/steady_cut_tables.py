@@ -116,14 +116,16 @@ def changes(found):
 
 def lengths_needed(found):
     """Rows of a table: how well one cut knows the mean force, by packings and by its record, and how many depths of cut
-    it takes to know it to ACCURACY; the larger error counts, for that of three packings is itself not known well."""
+    and minutes it takes to know it to ACCURACY; the larger error counts, for that of three packings is itself not known
+    well."""
     rows = []
     for case in (*SETTINGS, NO_GRAINS):
         row = found.get(case)
         if row and len(row["each"]) > 2:
             depths, errors = scatter(row)
-            rows.append([case, f"{depths:.0f}", *(f"{100 * error:.0f} %" for error in errors),
-                         f"{depths * (errors.max() / ACCURACY)**2:.0f}"])
+            needed = depths * (errors.max() / ACCURACY)**2
+            rows.append([case, f"{depths:.0f}", *(f"{100 * error:.0f} %" for error in errors), f"{needed:.0f}",
+                         f"{needed * depth_of(case) * row['cost']:.0f}"])
     return rows
 
 

@@ -189,9 +189,10 @@ def test_a_cause_is_judged_by_what_it_changes_in_each_packing():
 
 def test_a_cut_has_to_be_as_long_as_its_packings_or_its_record_ask():
     """Packings of 30, 40, 50 kN/m scatter by 25 %, records say 5 of 40: for 10 % six times the nine depths of each."""
-    row = {**of_packings(force=[30.0, 40.0, 50.0]), "way": 27}
-    assert tables.lengths_needed({"eight discs": row, "base": {**of_packings(force=[40.0] * 3), "way": 27}}) == [
-        ["base", "9", "0 %", "12 %", "14"], ["eight discs", "9", "25 %", "12 %", "56"]]
+    row = {**of_packings(force=[30.0, 40.0, 50.0]), "way": 27, "cost": 100.0}
+    base = {**of_packings(force=[40.0] * 3), "way": 27, "cost": 200.0}
+    assert tables.lengths_needed({"eight discs": row, "base": base}) == [
+        ["base", "9", "0 %", "12 %", "14", "14"], ["eight discs", "9", "25 %", "12 %", "56", "28"]]
 
 
 @pytest.mark.parametrize("case, other", [
