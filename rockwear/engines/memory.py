@@ -124,7 +124,11 @@ class Places:
 
     def find(self, numbers, objects):
         """The objects of these numbers (k,) are `objects` from now on."""
-        first = np.array([[place(vector(found)) for found in objects] for vector in self.vectors.values()], np.int64)
+        self._set(numbers, np.array([[place(vector(found)) for found in objects] for vector in self.vectors.values()],
+                                    np.int64))
+
+    def _set(self, numbers, first):
+        """The vectors of these objects (k,) lie there, (v, k) indices in MEMORY, from now on."""
         for name, (vector, along) in self.rows.items():
             self.places[name][:, numbers] = first[vector[:, 0]] + along
 
@@ -177,7 +181,9 @@ class Motions(Places):
             numbers={"x": ("velocity", x), "y": ("velocity", x + 1), "vx": ("velocity", 0), "vy": ("velocity", 1),
                      "turning": ("spin", 2)},
             groups={"in_plane": ("x", "y"), "moving": ("vx", "vy")})
-        self.find(np.arange(len(self.states)), self.states)
+        layout = kernel_layout()
+        found = compiled.states_of(WORDS, layout, list_of_bodies(), np.array(bodies, np.int64))
+        self._set(np.arange(len(self.states)), found + layout[[compiled.VELOCITY, compiled.SPIN], None])
 
 
 # ---- contacts

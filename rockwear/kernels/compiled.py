@@ -367,6 +367,15 @@ def is_there(words, bodies, body):
 
 
 @compiled
+def states_of(words, layout, bodies, numbers):
+    """(k,) places of the states of these bodies (k,), which are there."""
+    found, one = np.empty(len(numbers), np.int64), pointed(words[bodies])
+    for k, body in enumerate(numbers):
+        found[k] = pointed(words[pointed(words[one + 2 * body]) + layout[STATE]])
+    return found
+
+
+@compiled
 def positions(memory, words, layout, bodies, count):
     """(count, 3) m of the bodies 0..count-1, nan of one that has been erased."""
     found, one = np.full((count, 3), np.nan), pointed(words[bodies])
