@@ -15,8 +15,7 @@ from rockwear.scenes import steady_cut
 
 TOOL = steady_cut.groups(
     rock="crushing_sandstone", discs_per_depth=8.0, depth_of_cut=5e-3, cut_length=0.12, rake=-5.0, clearance=5.0,
-    tip_radius=5e-4, tool_kn=5e9, tool_kt=5e9, contact_damping=0.1, time_step_fraction=0.9, heat=False,
-    wear_acceleration=1.0,
+    tip_radius=5e-4, tool_kn=5e9, tool_kt=5e9, contact_damping=0.1, heat=False, wear_acceleration=1.0,
     # Where discs_per_depth does not give them:
     window_behind=0.02, window_ahead=0.044, window_height=0.03, tooth_height=0.02, tooth_width=0.008,
     tool_radius_min=2e-4, tool_radius_max=2.6e-4, radius_min=5e-4, radius_max=7.5e-4)

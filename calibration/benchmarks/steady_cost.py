@@ -2,11 +2,11 @@
 
     python3 -m calibration.benchmarks.steady_cost DIR        (part of make bench)
 
-Runs calibration/benchmarks/steady_engines.py, by whose clocks all Python costs so much, and overhead.py with the
-engines and without them in TURNS turns. Writes steady_cost.md, steady_engines.json and overhead.json into DIR.
+Runs calibration/benchmarks/steady_engines.py. Writes steady_cost.md and steady_engines.json into DIR.
 """
 import json
-from statistics import median
+
+import numpy as np
 
 from calibration import generated
 from calibration.benchmarks import one_curve
@@ -20,30 +20,17 @@ WORK = "tool_friction", "rock_friction", "slip in bonds", "bond_breaking", "rock
 """Those that are J."""
 
 
-TURNS = 5
-
-
-def turns(folder):
-    """{"alive" and "dead" engines: [s a step]}."""
-    found = {"alive": [], "dead": []}
-    for turn in range(TURNS):
-        for engines, seconds in found.items():
-            place = folder / f"overhead/{turn}-{engines}"
-            run_script("calibration/benchmarks/overhead.py", place, ["--engines", engines])
-            seconds.append(json.loads((place / "overhead.json").read_text(encoding="utf-8"))["seconds_a_step"])
-    return found
-
-
 def in_turns(found):
-    """Words on what `turns` found."""
+    """Words on what the turns with and without engines took."""
     parts = [100 * (alive / dead - 1) for alive, dead in zip(*found.values())]
-    return (f"With the engines and without them in {len(parts)} turns, a process for each, from the same instant: they "
-            f"cost {median(parts):.1f} % ({min(parts):.1f} to {max(parts):.1f}) of a step of "
-            f"{1e3 * median(found['dead']):.2f} ms (medians).")
+    low, middle, high = np.percentile(parts, [25, 50, 75])
+    return (f"In {len(parts)} turns of some steps with the engines and without them they cost {middle:.1f} % (half of "
+            f"the turns {low:.1f} to {high:.1f}) of a step of {1e3 * np.median(found['dead']):.2f} ms; what the window "
+            "does is not in it.")
 
 
-def table(found, alive_and_dead):
-    """Lines of Markdown of what calibration/benchmarks/steady_engines.py writes, and of what `turns` found."""
+def table(found):
+    """Lines of Markdown of what calibration/benchmarks/steady_engines.py writes."""
     exact, sampled = found["exact"], found["found"]
     errors = [[words, f"{100 * (sampled[name] / exact[name] - 1):+.2f} %",
                f"{100 * (sampled[name] - exact[name]) / exact['tool_work']:+.2f} %" if name in WORK else "–"]
@@ -54,7 +41,7 @@ def table(found, alive_and_dead):
     return ["## Engines in a steady cut", "",
             f"The cut of make run, {found['discs']} discs, {found['bonds']} bonds: all Python costs "
             f"{100 * found['overhead']:.1f} % of YADE's own step of {1e3 * found['step']:.2f} ms, over "
-            f"{found['steps']} steps. Of its time: {largest}.", "", in_turns(alive_and_dead), "",
+            f"{found['steps']} steps. Of its time: {largest}.", "", in_turns(found["turns"]), "",
             f"Over the next {found['sampled']} steps, the defaults against sampling in every step, on the same motion:",
             "", *generated.table(["sum", "difference", "over the tool's work"], errors),
             f"The distribution of wear differs by {100 * found['distribution']:.2f} %. The residual of energy is "
@@ -72,9 +59,7 @@ def curve(folder):
     found = json.loads((folder / "steady_engines.json").read_text(encoding="utf-8"))
     if found["found"]["kinetic energy"] != found["exact"]["kinetic energy"]:
         raise RunFailed("the two runs that differ in sampling alone have come to another motion")
-    alive_and_dead = turns(folder)
-    (folder / "overhead.json").write_text(json.dumps(alive_and_dead, indent=1), encoding="utf-8")
-    return table(found, alive_and_dead)
+    return table(found)
 
 
 if __name__ == "__main__":

@@ -3,8 +3,8 @@
     PYTHONPATH=. yade -n -x -j1 calibration/benchmarks/steady_engines.py --out DIR [--name value ...]
 
 The cut of `make run`, from where its tool has gone BEGIN. Clocks say what YADE and the engines cost over the next TIMED
-of way. Then the same steps follow twice, with the defaults and with every step sampled: samples do not
-act back on the motion, so the difference is theirs. Writes DIR/steady_engines.json.
+of way, and so do short turns with and without them. Then the same steps follow twice, with the defaults and with every
+step sampled: samples do not act back on the motion, so the difference is theirs. Writes DIR/steady_engines.json.
 calibration/benchmarks/steady_cost.py runs it.
 """
 import json
@@ -14,7 +14,7 @@ import time
 from pathlib import Path
 
 import numpy as np
-from yade import O, utils
+from yade import O, PyRunner, utils
 
 from calibration.benchmarks.make_run import BEGIN, CUT
 from rockwear.engines import base
@@ -27,6 +27,9 @@ from rockwear.scenes import steady_cut
 
 TIMED = 0.014
 """m."""
+TURNS, TURN = 30, 77
+"""Turns with the engines and without, and steps of each. Without them for long the rock would fall apart: part of its
+bond law is theirs. In a thousand steps half of its contacts went."""
 SAMPLED = 6000
 """Steps of the two runs that are compared."""
 
@@ -76,6 +79,20 @@ def timed(scene):
             "seconds": {**seconds, "runners and canonical points": total - yade - float(engines.sum())}}
 
 
+def turns():
+    """{"alive" and "dead" engines: [s of processor time a step]} in turns, from where the cut is."""
+    found = {"alive": [], "dead": []}
+    runners = [engine for engine in O.engines if isinstance(engine, PyRunner)]
+    for _ in range(TURNS):
+        for engines, seconds in found.items():
+            for runner in runners:
+                runner.dead = engines == "dead"
+            begin = time.process_time()
+            base.run(TURN)
+            seconds.append((time.process_time() - begin) / TURN)
+    return found
+
+
 def critical_steps(scene):
     """Critical steps over that of untouched rock: of the bonds that are intact now, and of rock under the tool."""
     rock, intact = scene.rock, scene.bonds.status == INTACT
@@ -98,6 +115,7 @@ def main():
         scene.run_chunk()
     cost, state, steps = timed(scene), scene.state(), critical_steps(scene)
     scene.save(folder, folder)
+    cost["turns"] = turns()
     found, depth = sampled(scene, state, folder)
     exact, exact_depth = sampled(scene, state, folder, every_step)
     off = float(np.abs(depth - exact_depth).sum() / exact_depth.sum())

@@ -11,7 +11,7 @@ SEEDS, MORE_SEEDS = (1, 2, 3), (1, 2, 3, 4, 5, 6)
 """Packings of each case, and of those at FLATS_DEPTH."""
 ROCK = dict(rock="crushing_sandstone")
 CUT = dict(depth_of_cut=5e-3, discs_per_depth=16, rake=-5.0, velocity=8.0, snapshot_period=5e-4, cut_length=0.06,
-           heat="true")
+           time_step_fraction=0.9, heat="true")
 SHORT, LONG = 0.03, 0.2
 """m of way with small discs, and with those by which causes are told: 40 depths, so that three packings together know
 the mean force to a tenth."""
