@@ -26,7 +26,7 @@ from rockwear.report import plots
 SAME_PATH = {"wear_acceleration": 100, "start_up": 0.002, "cycles": 0, "snapshot_period": 1}
 UNBREAKABLE = {**SAME_PATH, "start_up": 2e-4, "Rn": 1e12, "Rt": 1e12, "approach": 1e-4}
 HEAT, DEFAULT_HEAT = [2e-6, 1e-5, 5e-5, 1e-4, 2e-4, 5e-4, 1e-3], 1e-4
-FRACTION, DEFAULT_FRACTION = [0.1, 0.2, 0.4, 0.6, 0.8, 0.9, 0.95], 0.95
+FRACTION, DEFAULT_FRACTION = [0.1, 0.2, 0.4, 0.6, 0.8, 0.9, 0.95], 0.8
 
 
 def run_all(folder, jobs):

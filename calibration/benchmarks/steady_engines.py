@@ -3,8 +3,8 @@
     PYTHONPATH=. yade -n -x -j1 calibration/benchmarks/steady_engines.py --out DIR [--name value ...]
 
 The cut of `make run`, from where its tool has gone BEGIN. Clocks say what YADE and the engines cost over the next TIMED
-of way, and so do short turns with and without them. Then the same steps follow twice, with the defaults and with every
-step sampled: samples do not act back on the motion, so the difference is theirs. Writes DIR/steady_engines.json.
+of way, short turns without the engines how much longer YADE's own step is beside them. Then the same steps follow
+twice, with the defaults and with every step sampled: samples do not act back on the motion, so the difference is theirs. Writes DIR/steady_engines.json.
 calibration/benchmarks/steady_cost.py runs it.
 """
 import json
@@ -29,7 +29,7 @@ TIMED = 0.014
 """m."""
 TURNS, TURN = 30, 77
 """Turns with the engines and without, and steps of each. Without them for long the rock would fall apart: part of its
-bond law is theirs. In a thousand steps half of its contacts went."""
+bond law is theirs, and in 1500 steps half of its contacts went."""
 SAMPLED = 6000
 """Steps of the two runs that are compared."""
 
@@ -80,16 +80,19 @@ def timed(scene):
 
 
 def turns():
-    """{"alive" and "dead" engines: [s of processor time a step]} in turns, from where the cut is."""
+    """{"alive" and "dead" engines: [s of YADE's own time a step]} in turns, from where the cut is.
+
+    (What the engines take is not: right after a rest they have more to do.)
+    """
     found = {"alive": [], "dead": []}
     runners = [engine for engine in O.engines if isinstance(engine, PyRunner)]
     for _ in range(TURNS):
         for engines, seconds in found.items():
             for runner in runners:
                 runner.dead = engines == "dead"
-            begin = time.process_time()
+            begin = base.yade_time
             base.run(TURN)
-            seconds.append((time.process_time() - begin) / TURN)
+            seconds.append((base.yade_time - begin) / TURN)
     return found
 
 

@@ -242,7 +242,7 @@ HEAT = Group("heat", (
 # ---- accuracy
 
 TIME_STEP = (
-    Parameter("time_step_fraction", 0.95, "", number(1e-4, 1), "time step over the critical one", "make bench"),
+    Parameter("time_step_fraction", 0.8, "", number(1e-4, 1), "time step over the critical one", "make bench"),
     Parameter("time_step", 0.0, "s", number(0), "time step itself; 0: by time_step_fraction"))
 ACCURACY = Group("accuracy", (
     *TIME_STEP,

@@ -60,7 +60,7 @@ STEADY = Group("motion", (
     parameters.DAMPING, *parameters.OTHER_DAMPING))
 GROUPS = parameters.with_defaults([
     WINDOW, parameters.BONDS, parameters.PLANE_TOOL, parameters.CONTACT, STEADY, parameters.WEAR, parameters.HEAT,
-    parameters.ACCURACY, parameters.DENSITY_MAP], rock_sampling_period=7)
+    parameters.ACCURACY, parameters.DENSITY_MAP], rock_sampling_period=7, time_step_fraction=0.95)
 
 
 def groups(**defaults):

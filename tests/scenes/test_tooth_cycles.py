@@ -57,8 +57,8 @@ def test_energy_balance(cut):
 
 
 def test_energy_that_the_balance_misses_is_said_and_without_heat_there_is_no_heat_engine(cut, tmp_path):
-    """Forces sampled every 3000 steps only, more than a collision's length."""
-    run = tooth_cycles(tmp_path / "out", heat="false", cycles=0, report="false", sampling_period=3000)
+    """Forces sampled every 1000 steps only, more than a collision's length."""
+    run = tooth_cycles(tmp_path / "out", heat="false", cycles=0, report="false", sampling_period=1000)
     assert run.code == 0, run.stderr
     energy = run.summary["balances"]["energy"]
     assert abs(energy["residual"]) > 0.05 * energy["tool_work"]
