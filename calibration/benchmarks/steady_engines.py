@@ -4,8 +4,8 @@
 
 The cut of `make run`, from where its tool has gone BEGIN. Clocks say what YADE and the engines cost over the next TIMED
 of way, short turns without the engines how much longer YADE's own step is beside them. Then the same steps follow
-twice, with the defaults and with every step sampled: samples do not act back on the motion, so the difference is theirs. Writes DIR/steady_engines.json.
-calibration/benchmarks/steady_cost.py runs it.
+twice, with the defaults and with every step sampled: samples do not act back on the motion, so the difference is
+theirs. Writes DIR/steady_engines.json. calibration/benchmarks/steady_cost.py runs it.
 """
 import json
 import os
