@@ -207,6 +207,13 @@ def test_each_case_differs_in_one_cause_from_one_other(case, other):
     assert case in cases.CASES and cases.changed_from(case) == other
 
 
+def test_a_case_is_told_by_the_row_of_more_packings_and_costs_what_the_last_runs_did():
+    few, many = ({"packings": packings, "cost": cost} for packings, cost in ((1, 20.0), (3, 50.0)))
+    assert steady_cut.with_more_packings(few, many) == {"packings": 3, "cost": 20.0}
+    assert steady_cut.with_more_packings(many, few) is many and steady_cut.with_more_packings(few, None) is few
+    assert steady_cut.with_more_packings(None, many) is many
+
+
 def test_theories_stand_beside_cuts_of_other_rocks_depths_and_rakes():
     row = {"ucs": Measured(40.0, 2.0), "tensile_strength": Measured(4.0, math.nan),
            "peak": Measured(200.0, 10.0), "thrust": Measured(0.9, 0.1)}
