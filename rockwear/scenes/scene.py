@@ -19,8 +19,7 @@ class Scene(ABC):
 
     time_scale = 1.0
     """Seconds of the process in a second of the mechanics [Rojek 2003, 12.1]. All times of a scene but its time step
-    are
-    those of the process."""
+    are those of the process."""
 
     def __init__(self):
         self.stage, self.clock, self.engines = 0, 0.0, []
