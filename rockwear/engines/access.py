@@ -133,7 +133,7 @@ def rock_states(rock):
 
 
 def rock_positions(rock):
-    """(n, d) m of the specimen's particles in YADE now."""
+    """(n, d) m of the specimen's particles in YADE now, nan of one that has been erased."""
     found = compiled.positions(MEMORY, WORDS, kernel_layout(), list_of_bodies(), rock.count)
     return found[:, :rock.positions.shape[1]]
 

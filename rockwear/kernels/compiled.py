@@ -367,31 +367,34 @@ def is_there(words, bodies, body):
 
 
 @compiled
+def state_of(words, layout, bodies, body):
+    """Place of the state of a body that is there."""
+    return pointed(words[pointed(words[pointed(words[bodies]) + 2 * body]) + layout[STATE]])
+
+
+@compiled
 def states_of(words, layout, bodies, numbers):
     """(k,) places of the states of these bodies (k,), which are there."""
-    found, one = np.empty(len(numbers), np.int64), pointed(words[bodies])
+    found = np.empty(len(numbers), np.int64)
     for k, body in enumerate(numbers):
-        found[k] = pointed(words[pointed(words[one + 2 * body]) + layout[STATE]])
+        found[k] = state_of(words, layout, bodies, body)
     return found
 
 
 @compiled
 def positions(memory, words, layout, bodies, count):
     """(count, 3) m of the bodies 0..count-1, nan of one that has been erased."""
-    found, one = np.full((count, 3), np.nan), pointed(words[bodies])
+    found = np.full((count, 3), np.nan)
     for body in range(count):
-        if words[one + 2 * body] != 0:
-            state = pointed(words[pointed(words[one + 2 * body]) + layout[STATE]])
-            for along in range(3):
-                found[body, along] = memory[state + layout[POSITION] + along]
+        if is_there(words, bodies, body):
+            found[body] = read(memory, state_of(words, layout, bodies, body) + layout[POSITION])
     return found
 
 
 @compiled
 def velocity_at(memory, words, layout, bodies, body, point):
     """m/s of a point (m) of a rigid body that is there."""
-    one = pointed(words[pointed(words[bodies]) + 2 * body])
-    state = pointed(words[one + layout[STATE]])
+    state = state_of(words, layout, bodies, body)
     velocity = read(memory, state + layout[VELOCITY])
     turning = cross(read(memory, state + layout[SPIN]), less(point, read(memory, state + layout[POSITION])))
     return velocity[0] + turning[0], velocity[1] + turning[1], velocity[2] + turning[2]
