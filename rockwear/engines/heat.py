@@ -122,15 +122,28 @@ class Heat(Engine):
     def find_surfaces(self):
         """Find which contacts conduct and which surfaces convect and radiate now."""
         self.surface_time = self.clock
-        self.rock_friction.find_contacts()
-        rock, tool = self._rock_now(), self._tool_now()
-        self.network.rewire(edges=np.concatenate([rock[0], tool[0] + self.n]),
-                            conductance=np.concatenate([rock[1], tool[1]]))
-        exposed = np.concatenate([self._exposed_rock(), self._exposed_tool()])
+        self._find_paths()
+        rock = free_surface(positions=access.rock_positions(self.rock), radii=self.rock.radii)
+        rock[self.rock.fixed] = rock[self.touched[:, 1]] = 0.0
+        touched = np.zeros(len(self.body.node_of), bool)
+        touched[self.touched[:, 0]] = True
+        exposed = np.concatenate([rock, self.body.exposed(touched)])
         present = np.flatnonzero(np.concatenate([np.ones(self.n, bool), self.body.alive]))
-        self.network.convect(present, self.convection * exposed[present], self.ambient)
+        self._expose(present, exposed[present])
+
+    def _expose(self, nodes, areas):
+        self.network.convect(nodes, self.convection * areas, self.ambient)
         if self.emissivity:
-            self.network.radiate(present, self.emissivity * exposed[present], self.ambient)
+            self.network.radiate(nodes, self.emissivity * areas, self.ambient)
+
+    def _find_paths(self):
+        """Find which contacts conduct now."""
+        self.rock_friction.find_contacts()
+        pairs, conductance = self._rock_now()
+        tool, of_tool = self.tool_paths
+        alive = self.body.alive[tool].all(axis=1)
+        self.network.rewire(edges=np.concatenate([pairs, tool[alive] + self.n]),
+                            conductance=np.concatenate([conductance, of_tool[alive]]))
 
     def leave_rock(self):
         """Nothing touches the tool any more: all of its surface is free."""
@@ -147,22 +160,6 @@ class Heat(Engine):
         met = loose[~among(loose, pairs, self.n)]
         mean = conductance.mean() if len(conductance) else 0.0
         return np.concatenate([pairs[conducts], met]), np.concatenate([conductance[conducts], np.full(len(met), mean)])
-
-    def _tool_now(self):
-        pairs, conductance = self.tool_paths
-        alive = self.body.alive[pairs].all(axis=1)
-        return pairs[alive], conductance[alive]
-
-    def _exposed_rock(self):
-        exposed = free_surface(positions=access.rock_positions(self.rock), radii=self.rock.radii)
-        exposed[self.rock.fixed] = 0.0
-        exposed[self.touched[:, 1]] = 0.0
-        return exposed
-
-    def _exposed_tool(self):
-        touched = np.zeros(len(self.body.node_of), bool)
-        touched[self.touched[:, 0]] = True
-        return self.body.exposed(touched)
 
     # ---- changes of tool and rock
 
@@ -185,6 +182,16 @@ class Heat(Engine):
         change[:self.n] = (temperature - self.network.temperature[:self.n]) * self.network.capacity[:self.n]
         self.replaced += float(change.sum())
         self.network.add_heat(change)
+
+    def renew_rock(self, numbers, temperature):
+        """The particles `numbers` (k,) are other rock now, of this temperature (K). Until the next search for surfaces
+        it counts as not exposed."""
+        kelvin = self.network.temperature[:self.n].copy()
+        kelvin[numbers] = temperature
+        self.replace_rock(kelvin)
+        if self.conduction:
+            self._find_paths()
+            self._expose(numbers, np.zeros(len(numbers)))
 
     def renew_tool(self, temperature):
         """A whole tool of (m,) K in place of the present one, `tool_renewed` in the balance."""

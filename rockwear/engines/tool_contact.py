@@ -56,6 +56,8 @@ class ToolContact(Engine):
     def _begin_contacts(self):
         self.possible, self.seconds, self.touched = [], np.zeros(0), {}
         """Contacts that may be, the contact time (s) of each, and that of pairs that are not among them."""
+        self.places, self.parts = np.zeros(0, np.int64), np.zeros((3, 0), np.int64)
+        """Where `possible` lie in memory; their pieces, rock particles and which of the two is first."""
         self.before = np.zeros((0, 4))
         """Shear forces (N) of `possible` before this step, and 1 where they were in contact then."""
 
@@ -69,18 +71,27 @@ class ToolContact(Engine):
         """Find the contacts that the collider holds possible now."""
         self.collider = yade_engine(InsertionSortCollider)
         self.collided = self.collider.numAction
-        found = []
+        known, found, places = dict(zip(self.places.tolist(), self.possible)), [], []
         for piece, body in self.tool.body_of.items():
             for interaction in O.interactions.withBodyAll(body):
-                first = interaction.id1 == body
-                found.append(Contact(interaction, piece, interaction.id2 if first else interaction.id1, first))
-        self._keep(found)
+                # What Python holds keeps its place in memory: a place that is known is the contact that it was.
+                where = place(interaction)
+                contact = known.get(where)
+                if contact is None:
+                    first = interaction.id1 == body
+                    contact = Contact(interaction, piece, interaction.id2 if first else interaction.id1, first)
+                found.append(contact)
+                places.append(where)
+        if places != list(known):
+            self._keep(found, places)
 
     def forget_erased(self):
         """Sample contacts of erased bodies, which still look real, no more."""
-        self._keep([contact for contact in self.possible if contact.piece in self.tool.body_of])
+        kept = [(contact, where) for contact, where in zip(self.possible, self.places.tolist())
+                if contact.piece in self.tool.body_of]
+        self._keep([contact for contact, _ in kept], [where for _, where in kept])
 
-    def _keep(self, contacts):
+    def _keep(self, contacts, places):
         known = {contact[1:3]: k for k, contact in enumerate(self.possible)}
         from_row = [known.get(contact[1:3], -1) for contact in contacts]
         # The last row is that of contacts that are not known.
@@ -88,9 +99,7 @@ class ToolContact(Engine):
         seconds = self.touching()
         self.seconds = np.array([seconds.pop(contact[1:3], 0.0) for contact in contacts])
         self.touched = seconds
-        # What Python holds keeps its place in memory.
-        self.possible = contacts
-        self.places = np.array([place(contact.interaction) for contact in contacts], np.int64)
+        self.possible, self.places = contacts, np.array(places, np.int64)
         self.parts = np.array([contact[1:] for contact in contacts], np.int64).reshape(-1, 3).T.copy()
 
     def touching(self):

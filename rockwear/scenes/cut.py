@@ -241,13 +241,9 @@ class Cut(Scene):
         """The particles `numbers` (k,) are untouched rock now."""
         if self.damping:
             self.damping.connect()
-        if self.heat:
-            temperature = self.heat.network.temperature[:self.rock.count].copy()
-            temperature[numbers] = self.heat_model.rock_temperature
-            self.heat.replace_rock(temperature)
         self.canonical()
-        if self.heat and self.heat.conduction:
-            self.heat.find_surfaces()
+        if self.heat:
+            self.heat.renew_rock(numbers, self.heat_model.rock_temperature)
         self.energy.begin()
 
     # ---- what a checkpoint holds

@@ -67,6 +67,15 @@ def test_a_whole_tool_replaces_a_worn_one(found):
     assert got["dead"] > 20 and got["alive"] == got["count"] and got["missing"] < 1e-14
 
 
+def test_other_rock_is_not_exposed_before_the_next_search_for_surfaces(found):
+    got = found["rock renewed"]
+    at_once, first, second, third = got["rows"]
+    assert at_once == [350.0, 300.0] and got["replaced"] == pytest.approx(got["exact"], rel=1e-13)
+    # The air has 280 K.
+    assert first[0] == second[0] == 350.0 and 280.0 < third[0] < 349.99
+    assert 300.0 > first[1] > second[1] > third[1] > 280.0 and got["missing"] < 1e-14
+
+
 def test_spheres_in_space_close_their_balance(found):
     got = found["particles"]
     assert got["gone"] == 10 and got["hottest"] and got["shank"] == 0.0 and got["missing"] < 1e-14

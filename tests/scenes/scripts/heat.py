@@ -259,6 +259,20 @@ def renewed():
     return {"dead": dead, "alive": int(body.alive.sum()), "count": body.count, "missing": missing(heat)}
 
 
+def rock_renewed():
+    """Other rock in place of the first of two particles, which stand in the wind: their temperatures at once, and after
+    each of three visits, before whose second the next search for surfaces is not due."""
+    tool, body = in_plane()
+    heat = engine(body, Engines(tool.count, 2), convection=1e4, emissivity=0.9)
+    heat.renew_rock(np.array([0]), 350.0)
+    rows = [heat.network.temperature[:2].tolist()]
+    for _ in range(3):
+        visit(heat)
+        rows.append(heat.network.temperature[:2].tolist())
+    return {"rows": rows, "replaced": heat.balance()["rock_replaced"], "exact": C_ROCK * (350.0 - FIRST),
+            "missing": missing(heat)}
+
+
 def particles():
     """A tool of spheres: friction, exchange, convection, wear, loose pieces and a fixed shank in one balance."""
     outline = tooth(height=0.02, width=0.012, rake=0.2, clearance=0.1, tip_radius=2e-3)
@@ -282,7 +296,7 @@ def particles():
 
 
 MAKERS = {"plane": in_plane, "space": in_space}
-found = {"renewed": renewed(), "particles": particles()}
+found = {"renewed": renewed(), "rock renewed": rock_renewed(), "particles": particles()}
 for name, maker in MAKERS.items():
     found[name] = {"radiating": radiating(maker), "friction": friction(maker), "exchange": exchange(maker),
                    "restart": restart(maker), "worn": {str(a): worn(maker, a) for a in (1.0, 1e4)}}
