@@ -215,7 +215,7 @@ class CpmBonds(BondLog):
     def _let_slip(self):
         """Take the slip out of loose bonds."""
         if self.loose is None:
-            self.loose = np.flatnonzero(self.slips_freely & (self.omega > LOOSE) & (self.status == INTACT))
+            self.loose = compiled.damaged_beyond(LOOSE, self.omega, self.slips_freely, self.status, INTACT)
         if len(self.loose):
             compiled.let_slip(MEMORY, self.where, self.loose, self.table, self.lengths)
 

@@ -92,13 +92,17 @@ class ToolContact(Engine):
         self._keep([contact for contact, _ in kept], [where for _, where in kept])
 
     def _keep(self, contacts, places):
-        known = {contact[1:3]: k for k, contact in enumerate(self.possible)}
-        from_row = [known.get(contact[1:3], -1) for contact in contacts]
+        rows = {where: k for k, where in enumerate(self.places.tolist())}
+        from_row = [rows.pop(where, -1) for where in places]
+        self.touched.update((self.possible[k][1:3], self.seconds[k]) for k in rows.values() if self.seconds[k] > 0.0)
         # The last row is that of contacts that are not known.
         self.before = np.append(self.before, np.zeros((1, 4)), axis=0)[from_row]
-        seconds = self.touching()
-        self.seconds = np.array([seconds.pop(contact[1:3], 0.0) for contact in contacts])
-        self.touched = seconds
+        self.seconds = np.append(self.seconds, 0.0)[from_row]
+        if self.touched:
+            # A pair may come back.
+            for k, row in enumerate(from_row):
+                if row < 0:
+                    self.seconds[k] = self.touched.pop(contacts[k][1:3], 0.0)
         self.possible, self.places = contacts, np.array(places, np.int64)
         self.parts = np.array([contact[1:] for contact in contacts], np.int64).reshape(-1, 3).T.copy()
 

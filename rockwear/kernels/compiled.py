@@ -106,6 +106,17 @@ def weaken(memory, where, numbers, laws):
 
 
 @compiled
+def damaged_beyond(least, omega, which, status, intact):
+    """Numbers (k,) of `which` (m,) bool bonds are `intact` by their status (m,), and damaged by more than `least`."""
+    numbers, count = np.empty(len(omega), np.int64), 0
+    for n in range(len(omega)):
+        if which[n] and omega[n] > least and status[n] == intact:
+            numbers[count] = n
+            count += 1
+    return numbers[:count].copy()
+
+
+@compiled
 def let_slip(memory, where, numbers, laws, lengths):
     """Leave loose bonds (k,) the elastic part of their shear strains, as `relieve` does, but without the turn into the
     plane of the contact: that is for looks, this comes in every step. lengths: (m,) m."""
@@ -129,7 +140,7 @@ def slip_and_force(memory, where, status, separated, active):
                 found[count, along] = memory[where[SLIPPED, n] + along]
                 found[count, 3 + along] = memory[where[SHEAR_FORCE, n] + along]
             count += 1
-    return numbers[:count].copy(), found[:count].copy()
+    return numbers[:count], found[:count]
 
 
 @compiled
