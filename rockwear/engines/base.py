@@ -6,7 +6,7 @@ from time import perf_counter
 
 from yade import O, PyRunner
 
-START, FORCES, MOTION = "start", "forces", "motion"
+PHASES = START, FORCES, MOTION = "start", "forces", "motion"
 """Phases of a step: before its forces; after the forces and before the integrator; after the integrator."""
 
 _registered = {}
@@ -78,7 +78,7 @@ def register(engines):
     _registered.clear()
     failures.clear()
     _registered.update({engine.name: engine for engine in engines})
-    for phase in (START, FORCES, MOTION):
+    for phase in PHASES:
         for names in _groups(engines, phase).values():
             _command(names)
 
@@ -91,7 +91,7 @@ def insert(engines):
     """
     start, forces, motion = ([PyRunner(command=_command(names), iterPeriod=period, updateGlobals=False)
                               for period, names in _groups(engines, phase).items()]
-                             for phase in (START, FORCES, MOTION))
+                             for phase in PHASES)
     O.engines = start + O.engines[:-1] + forces + O.engines[-1:] + motion
 
 

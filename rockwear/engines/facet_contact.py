@@ -186,7 +186,7 @@ class FacetContact(ToolContact):
         YADE's facets have two sides. The normal of a contact points from its first body to the second.
         """
         for contact in self.possible:
-            interaction, piece, _, tool_first = contact
+            interaction, piece, _, tool_first, _ = contact
             if interaction.isReal and not inactive(contact) and self._inside(contact):
                 body = O.bodies[self.tool.body_of[piece]]
                 outward = body.state.ori * Vector3(*self.tool.outward(piece))
@@ -197,7 +197,7 @@ class FacetContact(ToolContact):
     def _cancel(self, contact):
         """Take the contact's force off the particle in this step, and its friction off YADE's sum of plastic
         dissipation."""
-        interaction, _, rock, tool_first = contact
+        interaction, _, rock, tool_first, _ = contact
         slip = compiled.tool_slip(MEMORY, WORDS, self.layout, self.body_list, place(interaction),
                                   self.before[self.possible.index(contact)], O.dt)
         counted = slip * interaction.phys.shearForce.norm()
@@ -212,7 +212,7 @@ class FacetContact(ToolContact):
         depth, parts = self._joined(one, other, as_found)
         if parts is None or inactive(acting) or acting.interaction.phys.normalForce.norm() < INACTIVE_STIFFNESS:
             return
-        interaction, _, rock, tool_first = acting
+        interaction, _, rock, tool_first, _ = acting
         force = (outwards(one) * (depth * parts[0]) + outwards(other) * (depth * parts[1])
                  - outwards(acting) * interaction.geom.penetrationDepth) * interaction.phys.kn
         O.forces.addF(rock, force)

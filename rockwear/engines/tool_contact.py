@@ -11,9 +11,9 @@ from rockwear.engines.memory import MEMORY, WORDS, kernel_layout, list_of_bodies
 from rockwear.kernels import compiled
 from rockwear.kernels.wear_laws import NORMAL, WORK
 
-Contact = namedtuple("Contact", "interaction piece rock tool_first")
-"""A contact of the tool: YADE's interaction, the tool's piece (particle or facet) and the rock particle, and whether
-the piece is the interaction's first body."""
+Contact = namedtuple("Contact", "interaction piece rock tool_first place")
+"""A contact of the tool: YADE's interaction, the tool's piece (particle or facet) and the rock particle, whether the
+piece is the interaction's first body, and where the interaction lies in memory."""
 
 
 class ToolContact(Engine):
@@ -71,7 +71,7 @@ class ToolContact(Engine):
         """Find the contacts that the collider holds possible now."""
         self.collider = yade_engine(InsertionSortCollider)
         self.collided = self.collider.numAction
-        known, found, places = dict(zip(self.places.tolist(), self.possible)), [], []
+        known, found = {contact.place: contact for contact in self.possible}, []
         for piece, body in self.tool.body_of.items():
             for interaction in O.interactions.withBodyAll(body):
                 # What Python holds keeps its place in memory: a place that is known is the contact that it was.
@@ -79,32 +79,29 @@ class ToolContact(Engine):
                 contact = known.get(where)
                 if contact is None:
                     first = interaction.id1 == body
-                    contact = Contact(interaction, piece, interaction.id2 if first else interaction.id1, first)
+                    contact = Contact(interaction, piece, interaction.id2 if first else interaction.id1, first, where)
                 found.append(contact)
-                places.append(where)
-        if places != list(known):
-            self._keep(found, places)
+        if [contact.place for contact in found] != list(known):
+            self._keep(found)
 
     def forget_erased(self):
         """Sample contacts of erased bodies, which still look real, no more."""
-        kept = [(contact, where) for contact, where in zip(self.possible, self.places.tolist())
-                if contact.piece in self.tool.body_of]
-        self._keep([contact for contact, _ in kept], [where for _, where in kept])
+        self._keep([contact for contact in self.possible if contact.piece in self.tool.body_of])
 
-    def _keep(self, contacts, places):
-        rows = {where: k for k, where in enumerate(self.places.tolist())}
-        from_row = [rows.pop(where, -1) for where in places]
+    def _keep(self, contacts):
+        rows = {contact.place: k for k, contact in enumerate(self.possible)}
+        from_row = [rows.pop(contact.place, -1) for contact in contacts]
         self.touched.update((self.possible[k][1:3], self.seconds[k]) for k in rows.values() if self.seconds[k] > 0.0)
         # The last row is that of contacts that are not known.
         self.before = np.append(self.before, np.zeros((1, 4)), axis=0)[from_row]
         self.seconds = np.append(self.seconds, 0.0)[from_row]
-        if self.touched:
-            # A pair may come back.
-            for k, row in enumerate(from_row):
-                if row < 0:
-                    self.seconds[k] = self.touched.pop(contacts[k][1:3], 0.0)
-        self.possible, self.places = contacts, np.array(places, np.int64)
-        self.parts = np.array([contact[1:] for contact in contacts], np.int64).reshape(-1, 3).T.copy()
+        for k, row in enumerate(from_row):
+            if row < 0:
+                # A pair may come back.
+                self.seconds[k] = self.touched.pop(contacts[k][1:3], 0.0)
+        self.possible = contacts
+        numbers = np.array([contact[1:] for contact in contacts], np.int64).reshape(-1, 4).T.copy()
+        self.parts, self.places = numbers[:3], numbers[3]
 
     def touching(self):
         """{(piece, rock): s in contact since `take_heating`}."""

@@ -98,7 +98,7 @@ while not scene.stage_done:
         wear.law, sawn = law, True
         low = np.flatnonzero(tool.positions[:, 1] < BAND[0])
         below = [int(np.sum(tool.erosion.alive[low])), sum(int(i) in bodies.body_of for i in low),
-                 sum(index in low for _, index, _, _ in contact.possible)]
+                 sum(one.piece in low for one in contact.possible)]
 wear.act()
 if scene.heat:
     scene.heat.act()
