@@ -239,8 +239,10 @@ def contact_columns(*names):
 @cache
 def kernel_layout():
     """(17,) what compiled.CONTACT says, of contacts and of bodies. Raises ParameterError."""
-    bodies = [Body() for _ in range(TRIED)]
-    states = [body.state for body in bodies]
+    bodies, states = [Body() for _ in range(TRIED)], [State() for _ in range(TRIED)][::-1]
+    for body, state in zip(bodies, states):
+        # The state a body is made with can lie right behind it, and with it a second pointer to that state.
+        body.state = state
     found = {**contact_layout(), "state": offset("state", bodies, [SIZE * (place(state) + 1) for state in states]),
              **{name: place(getattr(states[0], of)) - place(states[0])
                 for name, of in (("velocity", "vel"), ("spin", "angVel"))}}

@@ -49,6 +49,10 @@ def test_the_check_leaves_vectors_as_they_are(found):
     assert found["left"] == [0.6, 0.0, -0.8]
 
 
+def test_one_place_is_found_where_objects_lie_side_by_side(found):
+    assert found["packed"] == []
+
+
 def test_another_layout_is_refused_in_one_line_and_never_a_wrong_number(found):
     said = [*found["other layouts"], found["by value"], found["out of reach"]]
     assert len(said) == 17

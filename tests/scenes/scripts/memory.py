@@ -9,9 +9,9 @@ from unittest import mock
 
 import numpy as np
 from yade import (
-    Bo1_Sphere_Aabb, CpmPhys, ForceResetter, FrictPhys, FrictViscoPhys, Ig2_Sphere_Sphere_ScGeom,
+    Body, Bo1_Sphere_Aabb, CpmPhys, ForceResetter, FrictPhys, FrictViscoPhys, Ig2_Sphere_Sphere_ScGeom,
     InsertionSortCollider, Interaction, InteractionLoop, Ip2_FrictMat_FrictMat_FrictPhys,
-    Law2_ScGeom_FrictPhys_CundallStrack, NewtonIntegrator, O, ScGeom, Vector3, utils)
+    Law2_ScGeom_FrictPhys_CundallStrack, NewtonIntegrator, O, ScGeom, State, Vector3, utils)
 
 from rockwear.engines import cpm_bonds, memory
 from rockwear.kernels import compiled
@@ -184,6 +184,25 @@ def refused(**constants):
         return str(error)
 
 
+def packed(times=100):
+    """What is said where no gaps are left, and the objects that are tried lie one behind the other.
+
+    A body's state, say, then lies behind it at the same distance in all bodies, with the count of its owners.
+    """
+    kept, said = [], []
+    for find, kinds in ((memory._position, [State]), (memory.kernel_layout, [Body]),
+                        (memory.contact_layout, [ScGeom, FrictViscoPhys, Interaction]),
+                        (cpm_bonds._behind_slip, [CpmPhys]), (cpm_bonds._behind_normal, [ScGeom])):
+        for _ in range(times):
+            # They take what the last try gave back.
+            kept.append([made() for made in kinds for _ in range(memory.TRIED)])
+            try:
+                find.__wrapped__()
+            except ParameterError as error:
+                said.append(str(error))
+    return said
+
+
 def checked(vector):
     """What the check says of one vector of a contact."""
     try:
@@ -207,7 +226,7 @@ checks = {
     "as it is": refused(INSTANCE=memory.INSTANCE),
     "other layouts": [refused(INSTANCE=i, HOLDER=h) for i in (24, 32, 40, 48) for h in (0, 8, 16, 24)
                       if (i, h) != (40, 16)],
-    "out of reach": refused(REACH=5),
+    "out of reach": refused(REACH=5), "packed": packed(),
     "by reference": checked(VECTORS["strain"]), "by value": checked(lambda contact: Vector3(contact.phys.epsT)),
 }
 with open(sys.argv[-1], "w", encoding="utf-8") as file:
