@@ -36,7 +36,7 @@ SAMPLED = 6000
 
 def every_step(scene):
     """Sample every step from now on."""
-    scene.bonds.between_samples = scene.rock_friction.period = 1
+    scene.bonds.between_samples = scene.rock_friction.period = scene.tool.contact.sampling_period = 1
     runner, = (engine for engine in O.engines if "rock_friction" in getattr(engine, "command", ""))
     runner.iterPeriod = 1
 

@@ -33,6 +33,7 @@ class BondLog(Engine):
         self.law, self.laws = law, [law] * len(self.pairs) if laws is None else laws
         self.status = np.full(len(self.pairs), INTACT, np.int8)
         self.cracks, self.broken, self.clock = [], {}, clock
+        self.counted = crack_counts([])
         self.energy_released = self.energy_crushed = 0.0
         self.parted = []
         """Numbers of the bonds that have separated since `RockContacts` took note of them."""
@@ -114,9 +115,14 @@ class BondLog(Engine):
         self.energy_released, self.energy_crushed = float(state["energy_released"]), float(state["energy_crushed"])
         self.cracks = [Crack(*row[:7], int(row[7]), row[8], int(row[9]), int(row[10]))
                        for row in state["cracks"].tolist()]
+        self.counted = crack_counts([])
 
     def log(self):
-        return crack_counts(self.cracks)
+        # Rows come often, and a long cut has many cracks.
+        modes = [number for number, _ in self.counted.values()]
+        new = crack_counts(self.cracks[sum(modes):])
+        self.counted = {name: (before + number, unit) for before, (name, (number, unit)) in zip(modes, new.items())}
+        return dict(self.counted)
 
 
 def crack_counts(cracks):

@@ -23,23 +23,8 @@ from rockwear.kernels.bond_laws.cohesive import UNBREAKABLE
 
 LOOK_PERIOD = 10
 """Steps between looks at all bonds."""
-STRAIGHT = 10
-"""Points on the path that a bond is taken to have come before the first look that finds it softened or slipped."""
 LOOSE = 0.5
 """Damage from which on the slip of a bond that slip does not damage is taken out of its strains in every step."""
-
-
-def _slip_before(law, contact):
-    """Work (J) of slip of a bond as if it had come to its displacements on a straight path."""
-    phys, bond, work, before = contact.phys, law.initial_state(), 0.0, 0.0
-    un = (compiled.opening(min(phys.omega, 1.0), law.onset, law.gone) if phys.omega else
-          -phys.normalForce.dot(contact.geom.normal) / law.kn)
-    ut = phys.epsT.norm() * phys.refLength
-    for k in range(1, STRAIGHT + 1):
-        _, (Ft,) = law.respond(bond, un * k / STRAIGHT, (ut * k / STRAIGHT,))
-        work, before = work + 0.5 * (Ft + before) * ut / STRAIGHT, Ft
-    # What the present force stores is not spent; where it is above the law's, `_damage` tells what the fall gives.
-    return work - 0.5 * phys.shearForce.squaredNorm() / law.kt
 
 
 _Contact = namedtuple("_Contact", "interaction geom phys")
@@ -262,8 +247,8 @@ class CpmBonds(BondLog):
     def _begin(self, numbers):
         """These bonds are found to have slipped or softened."""
         self.active[numbers] = True
-        for n in numbers.tolist():
-            self._dissipate(n, _slip_before(self.laws[n], self.contacts[n]))
+        self.energy_released += compiled.begin(MEMORY, self.where, numbers, self.table, float(self.law.hardening),
+                                               self.dissipated, self.by_slip)
 
     def _part(self, gone):
         """YADE has broken these bonds."""

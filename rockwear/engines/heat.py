@@ -154,7 +154,7 @@ class Heat(Engine):
     def _rock_now(self):
         """Rock particles in contact conduct, and those across closed pores; new contacts with the mean conductance."""
         pairs, conductance = self.rock_paths
-        loose = np.sort(np.array([(i.id1, i.id2) for i in self.rock_friction.contacts], int).reshape(-1, 2), axis=1)
+        loose = np.sort(self.rock_friction.touching_pairs(), axis=1)
         touching = np.concatenate([self.bonds.pairs[self.bonds.in_contact()], loose])
         conducts = conducting(pairs, among(pairs, touching, self.n), self.facing, self.n)
         met = loose[~among(loose, pairs, self.n)]

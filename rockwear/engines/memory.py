@@ -41,6 +41,14 @@ def place(found):
     return _pointer(_pointer(id(found) + INSTANCE) + HOLDER) // SIZE - 1
 
 
+def places(objects):
+    """(k,) `place` of each of these objects."""
+    pointers = np.fromiter(map(id, objects), np.int64, len(objects))
+    for behind in (INSTANCE, HOLDER):
+        pointers = WORDS.take(pointed(pointers + behind))
+    return pointed(pointers)
+
+
 def pointed(pointers):
     """(k,) indices in MEMORY of what these pointers (k,) point to."""
     return (pointers >> 3) - 1

@@ -7,13 +7,18 @@ from yade import InsertionSortCollider, O
 
 from rockwear.engines.access import contact_energy, yade_engine
 from rockwear.engines.base import FORCES, Engine
-from rockwear.engines.memory import MEMORY, WORDS, kernel_layout, list_of_bodies, place
+from rockwear.engines.memory import MEMORY, WORDS, kernel_layout, list_of_bodies, places
 from rockwear.kernels import compiled
 from rockwear.kernels.wear_laws import NORMAL, WORK
 
 Contact = namedtuple("Contact", "interaction piece rock tool_first place")
 """A contact of the tool: YADE's interaction, the tool's piece (particle or facet) and the rock particle, whether the
 piece is the interaction's first body, and where the interaction lies in memory."""
+
+
+def _contact(interaction, piece, body, where):
+    first = interaction.id1 == body
+    return Contact(interaction, piece, interaction.id2 if first else interaction.id1, first, where)
 
 
 class ToolContact(Engine):
@@ -71,31 +76,32 @@ class ToolContact(Engine):
         """Find the contacts that the collider holds possible now."""
         self.collider = yade_engine(InsertionSortCollider)
         self.collided = self.collider.numAction
-        known, found = {contact.place: contact for contact in self.possible}, []
-        for piece, body in self.tool.body_of.items():
-            for interaction in O.interactions.withBodyAll(body):
-                # What Python holds keeps its place in memory: a place that is known is the contact that it was.
-                where = place(interaction)
-                contact = known.get(where)
-                if contact is None:
-                    first = interaction.id1 == body
-                    contact = Contact(interaction, piece, interaction.id2 if first else interaction.id1, first, where)
-                found.append(contact)
-        if [contact.place for contact in found] != list(known):
-            self._keep(found)
+        found = [(interaction, piece, body) for piece, body in self.tool.body_of.items()
+                 for interaction in O.interactions.withBodyAll(body)]
+        where = places([interaction for interaction, _, _ in found])
+        if np.array_equal(where, self.places):
+            return
+        # What Python holds keeps its place in memory: a place that is known is the contact that it was.
+        known = dict(zip(self.places.tolist(), range(len(self.places))))
+        rows = [known.get(at, -1) for at in where.tolist()]
+        self._keep([self.possible[row] if row >= 0 else _contact(*one, at)
+                    for row, one, at in zip(rows, found, where.tolist())], rows)
 
     def forget_erased(self):
         """Sample contacts of erased bodies, which still look real, no more."""
-        self._keep([contact for contact in self.possible if contact.piece in self.tool.body_of])
+        rows = [k for k, contact in enumerate(self.possible) if contact.piece in self.tool.body_of]
+        self._keep([self.possible[row] for row in rows], rows)
 
-    def _keep(self, contacts):
-        rows = {contact.place: k for k, contact in enumerate(self.possible)}
-        from_row = [rows.pop(contact.place, -1) for contact in contacts]
-        self.touched.update((self.possible[k][1:3], self.seconds[k]) for k in rows.values() if self.seconds[k] > 0.0)
+    def _keep(self, contacts, rows):
+        """These are the possible contacts from now on; rows: their numbers until now, -1 of new ones."""
+        left = np.ones(len(self.possible), bool)
+        left[[row for row in rows if row >= 0]] = False
+        for k in np.flatnonzero(left & (self.seconds > 0.0)).tolist():
+            self.touched[self.possible[k][1:3]] = self.seconds[k]
         # The last row is that of contacts that are not known.
-        self.before = np.append(self.before, np.zeros((1, 4)), axis=0)[from_row]
-        self.seconds = np.append(self.seconds, 0.0)[from_row]
-        for k, row in enumerate(from_row):
+        self.before = np.append(self.before, np.zeros((1, 4)), axis=0)[rows]
+        self.seconds = np.append(self.seconds, 0.0)[rows]
+        for k, row in enumerate(rows):
             if row < 0:
                 # A pair may come back.
                 self.seconds[k] = self.touched.pop(contacts[k][1:3], 0.0)

@@ -33,6 +33,8 @@ KN, KT, RN, RT, MU, OPEN_AT_PEAK, OPEN_AT_END, SLIP_END, COUPLING, RC = range(10
 """Rows of that table."""
 SPENT = 1.0 - 1e-6
 """Damage of a bond that slip has broken: YADE keeps it, as a contact with friction, until it opens."""
+STRAIGHT = 10
+"""Points on the path that a bond is taken to have come before the first look that finds it softened or slipped."""
 CRUSHING_STRAIN = 0.01
 """Elastic compressive strain at which YADE lets all bonds crush."""
 
@@ -205,6 +207,59 @@ def soften(n, before, now, laws, dissipated):
     work = softening_energy(min(now, 1.0), Rn, onset, end) - softening_energy(before, Rn, onset, end)
     dissipated[n] += work
     return work
+
+
+@compiled
+def slip_work(n, laws, hardening, un, ut):
+    """Work (J) against the shear force of new bond n on a straight path to the opening un and the shift ut (m), by the
+    law of kernels.bond_laws.Cohesive; hardening: its h."""
+    kn, kt, mu, Rc, coupling = laws[KN, n], laws[KT, n], laws[MU, n], laws[RC, n], laws[COUPLING, n]
+    onset, end_of_slip = laws[OPEN_AT_PEAK, n], laws[SLIP_END, n]
+    omega, shortened, slip, before, work = 0.0, 0.0, 0.0, 0.0, 0.0
+    for k in range(1, STRAIGHT + 1):
+        u = un * k / STRAIGHT
+        opened = u - shortened
+        if opened > onset and omega < 1.0:
+            omega = min(max(omega, (1.0 - onset / opened) / (1.0 - onset / laws[OPEN_AT_END, n])), 1.0)
+        if kn * opened < hardening * kn * shortened - Rc:
+            shortened = (u + Rc / kn) / (1.0 + hardening)
+        Ft = kt * (ut * k / STRAIGHT - slip)
+        if omega < 1.0:
+            Fn = kn * (u - shortened) * (1.0 - omega if opened > 0.0 else 1.0)
+            left = (1.0 - omega) / (1.0 - coupling * omega)
+            limit = max(left * laws[RT, n] - mu * Fn, 0.0)
+            if Ft > limit:
+                more = min((Ft - limit) / (kt - laws[RT, n] / end_of_slip), Ft / kt)
+                left = max(left - more / end_of_slip, 0.0)
+                omega = (1.0 - left) / (1.0 - coupling * left)
+                if omega < 1.0:
+                    slip += more
+                    Ft = kt * (ut * k / STRAIGHT - slip)
+        if omega >= 1.0:
+            limit = mu * max(-kn * (u - shortened), 0.0)
+            if Ft > limit:
+                slip, Ft = slip + (Ft - limit) / kt, limit
+        work, before = work + 0.5 * (Ft + before) * ut / STRAIGHT, Ft
+    return work
+
+
+@compiled
+def begin(memory, where, numbers, laws, hardening, dissipated, by_slip):
+    """Add to sums (m,) J what bonds (k,) slipped that are found softened or slipped for the first time, as if each had
+    come to its displacements on a straight path. -> J, of all."""
+    total = 0.0
+    for n in numbers:
+        omega, shear = memory[where[OMEGA, n]], read(memory, where[SHEAR_FORCE, n])
+        un = (opening(min(omega, 1.0), laws[OPEN_AT_PEAK, n], laws[OPEN_AT_END, n]) if omega > 0.0 else
+              -dot(read(memory, where[NORMAL_FORCE, n]), read(memory, where[NORMAL, n])) / laws[KN, n])
+        strain = read(memory, where[STRAIN, n])
+        ut = math.sqrt(dot(strain, strain)) * memory[where[LENGTH, n]]
+        # What the present force stores is not spent; where it is above the law's, `damage` tells what the fall gives.
+        work = slip_work(n, laws, hardening, un, ut) - 0.5 * dot(shear, shear) / laws[KT, n]
+        dissipated[n] += work
+        by_slip[n] += work
+        total += work
+    return total
 
 
 @compiled
@@ -577,20 +632,22 @@ def between_rock(words, layout, contacts, particles, others):
 
 
 @compiled
-def changes(found, particles, held):
-    """Of contacts (k, 3), places and bodies, below `particles`: the places (k,) in the order of their bodies, which
-    (l,) are not among the places `held` (m,), and those of the held that are not found."""
-    before = np.sort(held)
-    there, new, count = np.zeros(len(before), np.bool_), np.empty(len(found), np.int64), 0
-    for k in range(len(found)):
-        at = np.searchsorted(before, found[k, 0])
-        if at < len(before) and before[at] == found[k, 0]:
-            there[at] = True
-        else:
-            new[count] = k
+def by_bodies(found, particles):
+    """The places (k,) of contacts (k, 3), places and bodies below `particles`, in the order of their bodies: a loaded
+    scene has them in another order."""
+    return found[np.argsort(found[:, 1] * particles + found[:, 2]), 0].copy()
+
+
+@compiled
+def touching(words, layout, bodies, contacts):
+    """(l, 2) bodies, both of which are there, of those of these places (k,) that are in contact now."""
+    found, count = np.empty((len(contacts), 2), np.int64), 0
+    for contact in contacts:
+        first, second = ends_of(words, layout, contact)
+        if is_real(words, layout, contact) and is_there(words, bodies, first) and is_there(words, bodies, second):
+            found[count, 0], found[count, 1] = first, second
             count += 1
-    order = np.argsort(found[:, 1] * particles + found[:, 2])
-    return found[order, 0].copy(), new[:count].copy(), before[~there].copy()
+    return found[:count].copy()
 
 
 @compiled

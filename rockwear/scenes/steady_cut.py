@@ -27,6 +27,8 @@ from rockwear.scenes.rock_window import RockWindow
 
 LEAST_SPEED = 0.05
 """Part of the cutting velocity with which the ramp of speed begins."""
+SAMPLING_PERIOD = 3
+"""Steps between samples of the contacts of a tool of particles."""
 BOUNDARIES = "absorbing", "fixed", "free"
 
 
@@ -34,13 +36,14 @@ class OfTheCut(Presets):
     """kernels.cut_sizes: what the depth of cut and the number of discs in it give."""
 
     def defaults(self, value, values):
-        return cut_sizes(values["depth_of_cut"], value, velocity=values["velocity"],
-                         blunt=4 * values["tip_radius"] + values["wear_flat"])
+        sizes = cut_sizes(values["depth_of_cut"], value, velocity=values["velocity"],
+                          blunt=4 * values["tip_radius"] + values["wear_flat"])
+        return {**sizes, "sampling_period": SAMPLING_PERIOD} if values["tool"] == "particles" else sizes
 
 
 WINDOW = Group("rock", (
     Parameter("discs_per_depth", 0.0, "", zero_or(4, 64), "rock discs in the depth of cut, 16 for a result: gives the "
-              "radii of rock and tool, window, grading, tooth, ramp_length and record_period; 0: they are given",
+              "radii of rock and tool, window, grading, tooth, ramp_length and periods; 0: they are given",
               "ours", presets=OfTheCut()),
     Parameter("window_behind", 0.03, "m", above_zero, "length of the window behind the tip"),
     Parameter("window_ahead", 0.06, "m", above_zero, "length of the window ahead of the tip"),

@@ -49,6 +49,16 @@ def test_the_check_leaves_vectors_as_they_are(found):
     assert found["left"] == [0.6, 0.0, -0.8]
 
 
+def test_contacts_stay_where_they_are_until_they_are_searched_again(tmp_path):
+    # A place that YADE has given back would end the process sooner or later.
+    file = tmp_path / "found.json"
+    done = run_script(ROOT / "tests/scenes/scripts/places.py", str(file), "--out", str(tmp_path / "out"))
+    assert done.code == 0, done.stderr
+    found = json.loads(file.read_text(encoding="utf-8"))
+    assert found["lost"] == 0 and found["steps"] > 5000 and found["searches"] > 100
+    assert found["moved"] > 50 and found["cracks"] > 100 and found["worn"] > 0
+
+
 def test_one_place_is_found_where_objects_lie_side_by_side(found):
     assert found["packed"] == []
 

@@ -1,0 +1,59 @@
+"""Whether contacts that engines keep by their places in memory are among YADE's in every step of a cut; writes
+{"steps", "searches", "lost": numbers, "advances"} to FILE.
+
+    yade -n -x places.py FILE --out DIR
+"""
+import json
+import os
+import sys
+
+import numpy as np
+
+from rockwear.engines import base
+from rockwear.engines.memory import all_contacts
+from rockwear.run import parameters, servers
+from rockwear.run.main import COMMON
+from rockwear.scenes import steady_cut
+
+CUT = dict(discs_per_depth=4, depth_of_cut=2e-3, tip_radius=2e-4, velocity=40.0, cut_length=0.01, heat=True,
+           wear_acceleration=2000.0)
+
+
+class Probe(base.Engine):
+    """Compares, in each step in which nobody has to search anew."""
+
+    name, phase = "probe", base.FORCES
+
+    def __init__(self, scene):
+        super().__init__()
+        self.scene, self.steps, self.searches, self.lost = scene, 0, set(), 0
+
+    def act(self):
+        friction, contact = self.scene.rock_friction, self.scene.tool.contact
+        if friction.collider.numAction == friction.seen:
+            kept = np.concatenate([friction.places, contact.places])
+            self.lost += int(np.count_nonzero(~np.isin(kept, all_contacts())))
+            self.steps += 1
+            self.searches.add(friction.seen)
+
+
+def main():
+    """Cut, and write."""
+    file, words = sys.argv[1], sys.argv[2:]
+    servers.close()
+    scene = steady_cut.make(parameters.read([*steady_cut.groups(**CUT), COMMON], words))
+    probe = Probe(scene)
+    register = scene._register
+    scene._register = lambda *engines: register(*engines, probe)
+    scene.build()
+    before = scene.programme.window.rock.places.copy()
+    while scene.programme.distance < CUT["cut_length"] - 1e-3:
+        scene.run_chunk()
+    moved = int(np.any(scene.programme.window.rock.places != before, axis=1).sum())
+    with open(file, "w", encoding="utf-8") as out:
+        json.dump({"steps": probe.steps, "searches": len(probe.searches), "lost": probe.lost, "moved": moved,
+                   "cracks": len(scene.bonds.cracks), "worn": scene.tool.volume_balance()["archard"]}, out)
+    os._exit(0)
+
+
+main()
