@@ -132,8 +132,7 @@ class Places:
 
     def find(self, numbers, objects):
         """The objects of these numbers (k,) are `objects` from now on."""
-        self._set(numbers, np.array([[place(vector(found)) for found in objects] for vector in self.vectors.values()],
-                                    np.int64))
+        self._set(numbers, np.array([places(list(map(vector, objects))) for vector in self.vectors.values()]))
 
     def _set(self, numbers, first):
         """The vectors of these objects (k,) lie there, (v, k) indices in MEMORY, from now on."""
