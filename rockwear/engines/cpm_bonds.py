@@ -316,6 +316,12 @@ class CpmBonds(BondLog):
         """(m,) from 0, a bond in its initial state, to 1, a broken one."""
         return np.where(self.status == INTACT, np.minimum(self.omega, 1.0), 1.0)
 
+    def in_contact(self):
+        touching, broken = self.status == INTACT, np.flatnonzero(self.status == BROKEN)
+        normal, force, _ = np.split(self.places.read("forces", broken), 3)
+        touching[broken] = _dot(force, normal) > 0.0
+        return touching
+
     def elastic_energy(self):
         """Strain energy (J) of all bonds, sum of Fn^2/2kn + Ft^2/2kt with the secant kn of softened ones."""
         self.look_at_all()

@@ -218,7 +218,7 @@ def damaged_by_slip(law, steps, period):
     crack, = bonds.cracks
     energy = bonds.elastic_energy() + bonds.energy_released
     return {"force": float(abs(forces(response) - exact).max() / law.Rn), "energy": float(energy / work - 1),
-            "mode": crack.mode, "status": int(bonds.status[0])}
+            "mode": crack.mode, "status": int(bonds.status[0]), "presses": bool(bonds.in_contact()[0])}
 
 
 def damaged_both_ways(law, steps, period):
@@ -234,7 +234,8 @@ def damaged_both_ways(law, steps, period):
     work = np.sum(0.5 * (exact[1:] + exact[:-1]) * np.diff(path, axis=0))
     energy = bonds.elastic_energy() + bonds.energy_released
     return {"force": float(np.mean(abs(forces(response) - exact)) / law.Rn), "energy": float(energy / work - 1),
-            "by slip": float(bonds.by_slip[0] / law.fracture_energy()[1]), "status": int(bonds.status[0])}
+            "by slip": float(bonds.by_slip[0] / law.fracture_energy()[1]), "status": int(bonds.status[0]),
+            "presses": bool(bonds.in_contact()[0])}
 
 
 def crushed(law, period, steps=4000):
