@@ -231,7 +231,9 @@ class CpmBonds(BondLog):
         self.energy_released += crushing + softening
         if not len(numbers):
             return
-        self._begin(numbers[~self.active[numbers]])
+        found = numbers[~self.active[numbers]]
+        self.active[found] = True
+        self.energy_released += compiled.begin(MEMORY, self.where, found, self.table, float(self.law.hardening), *sums)
         if len(gone):
             self._part(gone)
             numbers = numbers[self.status[numbers] != SEPARATED]
@@ -243,12 +245,6 @@ class CpmBonds(BondLog):
             self._log(n)
             self.status[n] = BROKEN
         self.loose = None
-
-    def _begin(self, numbers):
-        """These bonds are found to have slipped or softened."""
-        self.active[numbers] = True
-        self.energy_released += compiled.begin(MEMORY, self.where, numbers, self.table, float(self.law.hardening),
-                                               self.dissipated, self.by_slip)
 
     def _part(self, gone):
         """YADE has broken these bonds."""

@@ -46,6 +46,16 @@ def fragments(*, pairs, intact, positions, areas, anchored):
     return Fragments(label, *_sizes(label[loose], positions[loose], areas[loose]))
 
 
+def flying(label, pairs, held):
+    """(n,) bool: particles of fragments that nothing touches.
+
+    label: (n,), see Fragments; pairs: (l, 2) particles that touch; held: (k,) particles that something else touches.
+    """
+    a, b = label[np.asarray(pairs, int).reshape(-1, 2)].T
+    other = a != b
+    return (label >= 0) & ~np.isin(label, np.concatenate([a[other], b[other], label[held]]))
+
+
 def _sizes(label, positions, areas):
     """Particles, area, length, thickness and centre of the pieces of `label` (n,) from 0."""
     particles, area = np.bincount(label), np.bincount(label, areas)

@@ -1,7 +1,7 @@
 """Record of the rock that a moving window has left behind: the groove, and the chips."""
 import numpy as np
 
-from rockwear.kernels.fragments import fragments
+from rockwear.kernels.fragments import flying, fragments
 from rockwear.kernels.groove import groove_profile
 from rockwear.model.rock_mass import SLABS
 
@@ -36,6 +36,15 @@ class CutRecord:
         self.booked |= members
         self.booked[leaving] = False
 
+    def let_go(self, *, positions, intact, distance, pairs, held):
+        """Chips that nothing touches are about to go; pairs, held: see kernels.fragments.flying. -> their particles
+        (k,)."""
+        found = self._fragments(positions, intact)
+        gone = flying(found.label, pairs, held)
+        self.chips += self._chips(found, np.unique(found.label[gone & ~self.booked]), distance)
+        self.booked[gone] = False
+        return np.flatnonzero(gone)
+
     def whole(self, *, positions, intact, distance, behind):
         """(groove, chips) rows: what is booked, and what stands and lies in the window further back than x = `behind`
         (m) now."""
@@ -45,19 +54,25 @@ class CutRecord:
 
     def _found(self, positions, intact, distance, end, leaving):
         """Rows of groove and chips up to x = `end`, and which particles (n,) these chips have."""
-        rock, here = self.rock, ~self.rock.absent
-        # Particles that are not there are no fragments.
-        found = fragments(pairs=rock.pairs, intact=intact, positions=positions, areas=np.pi * rock.radii**2,
-                          anchored=rock.anchored | ~here)
+        rock, found = self.rock, self._fragments(positions, intact)
         step = rock.slab_length / self.bins
         edges = np.arange(rock.begin, end + 0.5 * step, step)
-        heights = groove_profile(positions, rock.radii, (found.label < 0) & here, edges) - self.start[1]
+        heights = groove_profile(positions, rock.radii, (found.label < 0) & ~rock.absent, edges) - self.start[1]
         middles = 0.5 * (edges[1:] + edges[:-1]) - self.start[0]
         groove = [row for row in zip(middles.tolist(), heights.tolist()) if row[0] > 0]
         labels = np.unique(found.label[leaving & ~self.booked & (found.label >= 0)])
-        chips = [(distance, int(found.particles[k]), *(float(values[k]) for values in (
+        return groove, self._chips(found, labels, distance), np.isin(found.label, labels)
+
+    def _fragments(self, positions, intact):
+        """The fragments of the window; particles that are not there are none."""
+        rock = self.rock
+        return fragments(pairs=rock.pairs, intact=intact, positions=positions, areas=np.pi * rock.radii**2,
+                         anchored=rock.anchored | rock.absent)
+
+    def _chips(self, found, labels, distance):
+        """Rows of these fragments."""
+        return [(distance, int(found.particles[k]), *(float(values[k]) for values in (
             found.area, found.length, found.thickness, found.centre[:, 1] - self.start[1]))) for k in labels.tolist()]
-        return groove, chips, np.isin(found.label, labels)
 
     def state(self):
         """What a restart needs."""

@@ -3,7 +3,7 @@ import numpy as np
 from yade import O, Quaternion, Vector3
 
 from rockwear.engines.access import FIXED, IN_PLANE, rock_positions
-from rockwear.engines.bond_log import INTACT
+from rockwear.engines.bond_log import INTACT, SEPARATED
 from rockwear.model.rock_mass import WHOLE
 from rockwear.scenes import yade_scene
 
@@ -38,17 +38,17 @@ class RockWindow:
     The slab behind leaves with all that it has become: chips that it broke into go wherever they are, with their
     momentum and heat. It goes in ahead as untouched rock, at rest, at the rock's first temperature, displaced as the
     rock that is there; its bonds have the lengths of untouched rock, so that no stress is left when the load falls.
-    Chips that lie where it goes in leave too (`cleared` counts their particles), and bonds across a crack that has
-    reached the end are not made (`missed`).
+    Chips that lie where it goes in leave too, and those that are let go (`cleared` counts the particles of both), and
+    bonds across a crack that has reached the end are not made (`missed`).
     This happens between two steps, and balances count it as no change.
 
     rock: model.rock_mass.RockMass; held_below: m, height up to which the end behind is held: what is above may be
-    chips; sides: whether the ends are held too, and not the bottom alone; book: a function that is told of a slab
-    before it leaves (scenes.cut_record.CutRecord.book).
+    chips; sides: whether the ends are held too, and not the bottom alone; record: scenes.cut_record.CutRecord of what
+    leaves, if any.
     """
 
-    def __init__(self, *, rock, behind, held_below, sides=True, book=None):
-        self.rock, self.behind, self.held_below, self.sides, self.book = rock, behind, held_below, sides, book
+    def __init__(self, *, rock, behind, held_below, sides=True, record=None):
+        self.rock, self.behind, self.held_below, self.sides, self.record = rock, behind, held_below, sides, record
         self.held, self.cleared, self.missed = np.zeros(0, int), 0, 0
 
     def attach(self, scene):
@@ -89,8 +89,8 @@ class RockWindow:
         scene, rock, bonds = self.scene, self.rock, self.scene.bonds
         scene.close_books()
         positions, intact = rock_positions(rock), bonds.status == INTACT
-        if self.book:
-            self.book(positions=positions, intact=intact, distance=distance)
+        if self.record:
+            self.record.book(positions=positions, intact=intact, distance=distance)
         if self.sides:
             self.boundary.release(self.held)
         moved = rock.advance()
@@ -101,8 +101,7 @@ class RockWindow:
         self.boundary.release(np.concatenate([bottom, in_the_way]))
         there = ~rock.absent[moved]
         self._put(moved[there], (rock.places[moved] + displacement)[there], IN_PLANE)
-        for aside in (moved[~there], in_the_way):
-            self._put(aside, rock.places[aside], FIXED)
+        self._put_aside(np.concatenate([moved[~there], in_the_way]))
         # YADE's loop would find contacts of supports anew, as of rock.
         O.interactions.eraseNonReal()
         left = np.isin(rock.pairs, [*moved, *in_the_way]).any(axis=1)
@@ -118,6 +117,29 @@ class RockWindow:
         self._hold_bottom(bottom)
         self._hold_sides()
         scene.open_books(moved)
+
+    def let_go(self, distance):
+        """Take the chips away that nothing touches: neither rock, nor another chip, nor the tool, nor what holds the
+        window. Their heat goes with them; balances count it as no change. distance: m that the tool has gone."""
+        scene, rock, bonds = self.scene, self.rock, self.scene.bonds
+        touched = [contact.rock for contact in scene.tool.contact.possible if contact.interaction.isReal]
+        gone = self.record.let_go(
+            positions=rock_positions(rock), intact=bonds.status == INTACT, distance=distance,
+            pairs=np.concatenate([rock.pairs[bonds.in_contact()], scene.rock_friction.touching_pairs()]),
+            held=np.concatenate([self.held, touched]).astype(int))
+        if not len(gone):
+            return
+        scene.close_books()
+        rock.absent[gone] = True
+        self._put_aside(gone)
+        O.interactions.eraseNonReal()
+        left = (bonds.status != SEPARATED) & np.isin(rock.pairs, gone).any(axis=1)
+        bonds.renew(np.flatnonzero(left), np.zeros(0, int), np.zeros(0))
+        self.cleared += len(gone)
+        scene.open_books(gone)
+
+    def _put_aside(self, numbers):
+        self._put(numbers, self.rock.places[numbers], FIXED)
 
     def _put(self, numbers, places, blocked):
         for n, (x, y) in zip(numbers.tolist(), places.tolist()):

@@ -58,6 +58,8 @@ STEADY = Group("motion", (
               "where it is as small, in a record that is long enough, or after cut_length; 0: after cut_length"),
     Parameter("ramp_length", 5e-3, "m", number(0), "way on which the tool comes to its velocity, from a groove that "
               "fits it"),
+    Parameter("free_chips", "stay", "", choice("stay", "leave"), "what chips do that nothing touches: a fast tool "
+              "meets them again, a slow one does not", "calibration/results/steady_cut.md"),
     Parameter("begin_angle", 20.0, "deg", number(5, 90), "slope on which the rock rises ahead of the tool at first, as "
               "behind a chip; 90: as the face of the tool"),
     parameters.DAMPING, *parameters.OTHER_DAMPING))
@@ -89,9 +91,9 @@ def make(values):
     record = CutRecord(rock=rock, start=(v.window_behind, path))
     programme = SteadyCut(
         velocity=v.velocity * v.time_scale, cut_length=v.cut_length, ramp_length=v.ramp_length, accuracy=v.accuracy,
-        start=(v.window_behind, path), record=record,
+        start=(v.window_behind, path), record=record, chips_leave=v.free_chips == "leave",
         window=RockWindow(rock=rock, behind=v.window_behind, held_below=v.window_height - 2 * v.depth_of_cut,
-                          sides=v.boundary != "free", book=record.book))
+                          sides=v.boundary != "free", record=record))
     return Cut(tool=tool, programme=programme, rock=parts.bond(rock, v), time_scale=v.time_scale,
                boundary=Boundary(v.boundary),
                background_damping=v.background_damping, **parts.common(v))
@@ -132,14 +134,14 @@ class SteadyCut(Programme):
 
     velocity: m/s of the mechanics; cut_length, ramp_length: m; accuracy: of the mean cutting force, at which the cut
     ends before, 0: it does not; start: (2,) m, where the tool's origin begins; window: RockWindow; record: CutRecord of
-    what leaves it.
+    what leaves it; chips_leave: whether chips that nothing touches leave at the end of a chunk of steps.
     """
 
-    def __init__(self, *, velocity, cut_length, ramp_length, accuracy, start, window, record):
+    def __init__(self, *, velocity, cut_length, ramp_length, accuracy, start, window, record, chips_leave):
         super().__init__(Straight(start=start, velocity=(velocity, 0.0)), {"stage_names": np.array(["cut"])})
         self.origin = start
         self.velocity, self.cut_length, self.ramp_length = velocity, cut_length, ramp_length
-        self.accuracy, self.window, self.record = accuracy, window, record
+        self.accuracy, self.window, self.record, self.chips_leave = accuracy, window, record, chips_leave
         self.way, self.speed, self.since = 0.0, 0.0, 0
 
     def stages(self):
@@ -161,6 +163,8 @@ class SteadyCut(Programme):
             self.scene.stages[self.scene.stage] = "cut", self.step
             return True
         self.window.follow(self.way)
+        if self.chips_leave:
+            self.window.let_go(self.way)
         self.since = O.iter
         ramp = 2 * self.ramp_length / self.velocity
         reached = (self.step + 0.5 * self.scene.chunk) * self.scene.time_step

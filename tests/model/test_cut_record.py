@@ -68,6 +68,25 @@ def test_what_still_lies_in_the_window_counts_at_the_end_without_changing_the_re
     assert groove[-1][0] == pytest.approx(0.03 - START, abs=2 * rock.slab_length)
 
 
+@pytest.mark.parametrize("slabs", [0, 3])
+def test_a_chip_that_is_let_go_counts_once_also_where_its_first_slab_has_left(rock, slabs):
+    chip = chip_of(rock)
+    intact, record = cut_through(rock, chip)
+    drive(rock, intact, record, slabs)
+    # Rock that has entered is no part of it.
+    rock.absent[rock.laps > 0] = True
+    assert (record.booked & chip).any() == (slabs > 0)
+    touched = np.flatnonzero(chip & ~rock.absent)[:1]
+    there = dict(positions=rock.places, intact=intact & rock.bonded, distance=0.03, pairs=rock.pairs[:0])
+    assert not np.isin(touched, record.let_go(**there, held=touched)).any()
+    gone = record.let_go(**there, held=touched[:0])
+    assert np.isin(touched, gone).all() and not record.booked[gone].any()
+    rock.absent[gone] = True
+    drive(rock, intact, record, 6)
+    rows = [row for row in record.chips if row[CHIPS.index("particles")] > 3]
+    assert len(rows) == 1 and rows[0][CHIPS.index("particles")] == chip.sum()
+
+
 def test_a_restart_knows_what_was_booked(rock):
     chip = chip_of(rock)
     intact, record = cut_through(rock, chip)

@@ -7,7 +7,7 @@ import pytest
 
 from tests.running import (
     ROOT, arguments, assert_as_if_never_stopped, assert_density_is_shown, assert_refused, checks_of, history,
-    interrupt_script, refusals, run_script, value)
+    interrupt_script, last_snapshot, refusals, run_script, value)
 
 SCRIPT = ROOT / "yade_scripts/steady_cut.py"
 SMALL = dict(rock="", discs_per_depth=0, window_behind=0.016, window_ahead=0.048, window_height=0.026,
@@ -17,7 +17,7 @@ SMALL = dict(rock="", discs_per_depth=0, window_behind=0.016, window_ahead=0.048
 """A steady cut in miniature."""
 LAWS = {"brittle": dict(seed=2),
         "softening": dict(bond_law="cohesive", kt=8e9, rotation="blocked", mu=0.3, weibull_modulus=4, heat="true",
-                          control_radius=2.5),
+                          control_radius=2.5, free_chips="leave"),
         "crushing": dict(bond_law="cohesive", kt=8e9, grain_edge=2.4e-3, bond_crushing=6e7, bond_tension=3e6,
                          bond_cohesion=8.5e6, bond_shear_energy=500.0)}
 
@@ -59,6 +59,15 @@ def test_the_window_moves_and_the_balance_closes(never):
     if "control_radius" in never.options:
         # Absent particles have no density, reduced radii no less mass.
         assert_density_is_shown(never.out, never.options["control_radius"], 2500.0)
+
+
+def test_chips_that_nothing_touches_leave_where_they_are_to(never):
+    gone = np.isnan(last_snapshot(never.out)["rock_positions"][:, 0]).sum()
+    leave = "free_chips" in never.options
+    assert (gone > 50) == (value(never, "chip_particles_cleared") > 50) == leave
+    # Each is a chip.
+    chips = np.loadtxt(never.out / "chips.csv", delimiter=",", skiprows=1, ndmin=2)
+    assert chips[:, 1].sum() > (50 if leave else 10)
 
 
 def test_memory_stays_flat_as_the_cut_goes_on(never):
