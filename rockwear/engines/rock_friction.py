@@ -44,22 +44,32 @@ class RockContacts(Engine):
     def connect(self):
         self.layout, self.body_list = kernel_layout(), list_of_bodies()
         self.motion.connect()
+        self.held, self.places = {}, np.zeros(0, np.int64)
         self.find_contacts()
 
     def find_contacts(self):
-        """Find the contacts between rock particles that are no bonds, and the pairs that may touch: their `places` (k,)
-        in memory.
-
-        There they stay until the collider runs again: no other step of YADE's loop erases a contact for good. Who
-        erases one from Python has contacts found anew before the loop goes on.
-        """
+        """Find the contacts between rock particles that are no bonds, and the pairs that may touch before the collider
+        runs again or a bond parts: their `places` (k,) in memory."""
         self.collider = yade_engine(InsertionSortCollider)
         self.seen = self.collider.numAction
         self.bonds.parted.clear()
-        self.places = compiled.by_bodies(possible_contacts(self.particles, bond_classes()), self.particles)
+        found = possible_contacts(self.particles, bond_classes())
+        # In the order of their bodies: a loaded scene has them in another order.
+        places, new, gone = compiled.changes(found, self.particles, self.places)
+        # What Python holds keeps its place in memory, also where YADE lets go of it, with a body that is erased. So a
+        # place that is known is the contact that it was.
+        for where in gone.tolist():
+            del self.held[where]
+        for where, *pair in found[new].tolist():
+            # YADE would end where it is asked for contacts of an erased body.
+            if all(O.bodies[body] for body in pair):
+                self.held[where] = contact_of(*pair)
+        if len(self.held) < len(places):
+            places = places[[where in self.held for where in places.tolist()]]
+        self.places = places
 
     def _keep_up(self):
-        """Bring `places` up to date, where the collider has run or bonds have parted since."""
+        """Bring `possible` up to date, where the collider has run or bonds have parted since."""
         if self.collider.numAction != self.seen:
             self.find_contacts()
         elif self.bonds.parted:
@@ -67,25 +77,31 @@ class RockContacts(Engine):
 
     def _add_parted(self):
         """Add the pairs of bonds that have parted, where YADE still holds them possible and no new bond is there."""
-        added, known = [], set(self.places.tolist())
+        added = []
         for n in self.bonds.parted:
             pair = tuple(self.bonds.pairs[n].tolist())
             if self.bonds.status[n] == SEPARATED and all(O.bodies[i] for i in pair) and O.interactions.has(*pair):
-                where = place(contact_of(*pair))
-                if where not in known:
+                interaction = contact_of(*pair)
+                where = place(interaction)
+                if where not in self.held:
+                    self.held[where] = interaction
                     added.append(where)
         self.bonds.parted.clear()
         self.places = np.concatenate([self.places, np.array(added, np.int64)])
 
-    def touching_pairs(self):
-        """(k, 2) bodies of the pairs that are in contact now."""
-        self._keep_up()
-        return compiled.touching(WORDS, self.layout, self.body_list, self.places)
+    @property
+    def possible(self):
+        """The pairs that may be in contact, in the order of `places`."""
+        return [self.held[where] for where in self.places.tolist()]
 
     @property
     def contacts(self):
-        """YADE's contacts of the pairs that are in contact now."""
-        return [contact_of(*pair) for pair in self.touching_pairs().tolist()]
+        """Those of the pairs that `find_contacts` found that are in contact now."""
+        return [i for i in self.possible if i.isReal]
+
+    def touching_pairs(self):
+        """(k, 2) bodies of the pairs that `find_contacts` found that are in contact now."""
+        return compiled.touching(WORDS, self.layout, self.body_list, self.places)
 
     def elastic_energy(self):
         """Strain energy (J) of the contacts between rock particles that are no bonds."""

@@ -632,10 +632,20 @@ def between_rock(words, layout, contacts, particles, others):
 
 
 @compiled
-def by_bodies(found, particles):
-    """The places (k,) of contacts (k, 3), places and bodies below `particles`, in the order of their bodies: a loaded
-    scene has them in another order."""
-    return found[np.argsort(found[:, 1] * particles + found[:, 2]), 0].copy()
+def changes(found, particles, held):
+    """Of contacts (k, 3), places and bodies, below `particles`: the places (k,) in the order of their bodies, which
+    (l,) are not among the places `held` (m,), and those of the held that are not found."""
+    before = np.sort(held)
+    there, new, count = np.zeros(len(before), np.bool_), np.empty(len(found), np.int64), 0
+    for k in range(len(found)):
+        at = np.searchsorted(before, found[k, 0])
+        if at < len(before) and before[at] == found[k, 0]:
+            there[at] = True
+        else:
+            new[count] = k
+            count += 1
+    order = np.argsort(found[:, 1] * particles + found[:, 2])
+    return found[order, 0].copy(), new[:count].copy(), before[~there].copy()
 
 
 @compiled
