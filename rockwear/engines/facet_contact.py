@@ -5,7 +5,7 @@ import numpy as np
 from yade import O, Vector3
 
 from rockwear.engines.access import contact_energy, yade_friction_law
-from rockwear.engines.memory import MEMORY, WORDS, place
+from rockwear.engines.memory import MEMORY, WORDS
 from rockwear.engines.tool_contact import ToolContact
 from rockwear.kernels import compiled
 from rockwear.kernels.facet_notch import joined_depth
@@ -197,8 +197,8 @@ class FacetContact(ToolContact):
     def _cancel(self, contact):
         """Take the contact's force off the particle in this step, and its friction off YADE's sum of plastic
         dissipation."""
-        interaction, _, rock, tool_first, _ = contact
-        slip = compiled.tool_slip(MEMORY, WORDS, self.layout, self.body_list, place(interaction),
+        interaction, _, rock, tool_first, where = contact
+        slip = compiled.tool_slip(MEMORY, WORDS, self.layout, self.body_list, where,
                                   self.before[self.possible.index(contact)], O.dt)
         counted = slip * interaction.phys.shearForce.norm()
         self.functor.initPlasticDissipation(self.functor.plasticDissipation() - counted)
@@ -212,12 +212,12 @@ class FacetContact(ToolContact):
         depth, parts = self._joined(one, other, as_found)
         if parts is None or inactive(acting) or acting.interaction.phys.normalForce.norm() < INACTIVE_STIFFNESS:
             return
-        interaction, _, rock, tool_first, _ = acting
+        interaction, _, rock, tool_first, where = acting
         force = (outwards(one) * (depth * parts[0]) + outwards(other) * (depth * parts[1])
                  - outwards(acting) * interaction.geom.penetrationDepth) * interaction.phys.kn
         O.forces.addF(rock, force)
         self.totals[compiled.IMPULSE:] -= np.array(force) * O.dt
-        of_first, of_second = compiled.velocities(MEMORY, WORDS, self.layout, self.body_list, place(interaction))
+        of_first, of_second = compiled.velocities(MEMORY, WORDS, self.layout, self.body_list, where)
         self.totals[compiled.TOOL_WORK] += force.dot(Vector3(*(of_first if tool_first else of_second))) * O.dt
 
     def _joined_energy(self, pair, depth_of):

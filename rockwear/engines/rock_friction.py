@@ -56,8 +56,8 @@ class RockContacts(Engine):
         found = possible_contacts(self.particles, bond_classes())
         # In the order of their bodies: a loaded scene has them in another order.
         places, new, gone = compiled.changes(found, self.particles, self.places)
-        # What Python holds keeps its place in memory, also where YADE lets go of it, with a body that is erased. So a
-        # place that is known is the contact that it was.
+        # What Python holds keeps its place in memory, also where YADE erases it, with one of its bodies. So a place
+        # that is known is the contact that it was.
         for where in gone.tolist():
             del self.held[where]
         for where, *pair in found[new].tolist():

@@ -46,7 +46,7 @@ def fragments(*, pairs, intact, positions, areas, anchored):
     return Fragments(label, *_sizes(label[loose], positions[loose], areas[loose]))
 
 
-def flying(label, pairs, held):
+def free_fragments(label, pairs, held):
     """(n,) bool: particles of fragments that nothing touches.
 
     label: (n,), see Fragments; pairs: (l, 2) particles that touch; held: (k,) particles that something else touches.

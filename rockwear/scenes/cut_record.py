@@ -1,7 +1,7 @@
 """Record of the rock that a moving window has left behind: the groove, and the chips."""
 import numpy as np
 
-from rockwear.kernels.fragments import flying, fragments
+from rockwear.kernels.fragments import fragments, free_fragments
 from rockwear.kernels.groove import groove_profile
 from rockwear.model.rock_mass import SLABS
 
@@ -36,11 +36,11 @@ class CutRecord:
         self.booked |= members
         self.booked[leaving] = False
 
-    def let_go(self, *, positions, intact, distance, pairs, held):
-        """Chips that nothing touches are about to go; pairs, held: see kernels.fragments.flying. -> their particles
-        (k,)."""
+    def record_free_chips(self, *, positions, intact, distance, pairs, held):
+        """Record the chips that nothing touches, which are about to be removed. pairs, held: see kernels.fragments.
+        free_fragments. -> their particles (k,)."""
         found = self._fragments(positions, intact)
-        gone = flying(found.label, pairs, held)
+        gone = free_fragments(found.label, pairs, held)
         self.chips += self._chips(found, np.unique(found.label[gone & ~self.booked]), distance)
         self.booked[gone] = False
         return np.flatnonzero(gone)

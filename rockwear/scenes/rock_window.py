@@ -3,7 +3,7 @@ import numpy as np
 from yade import O, Quaternion, Vector3
 
 from rockwear.engines.access import FIXED, IN_PLANE, rock_positions
-from rockwear.engines.bond_log import INTACT, SEPARATED
+from rockwear.engines.bond_log import INTACT
 from rockwear.model.rock_mass import WHOLE
 from rockwear.scenes import yade_scene
 
@@ -38,8 +38,8 @@ class RockWindow:
     The slab behind leaves with all that it has become: chips that it broke into go wherever they are, with their
     momentum and heat. It goes in ahead as untouched rock, at rest, at the rock's first temperature, displaced as the
     rock that is there; its bonds have the lengths of untouched rock, so that no stress is left when the load falls.
-    Chips that lie where it goes in leave too, and those that are let go (`cleared` counts the particles of both), and
-    bonds across a crack that has reached the end are not made (`missed`).
+    Chips that lie where it goes in are removed, as free ones are where they are to (`cleared` counts the particles of
+    both), and bonds across a crack that has reached the end are not made (`missed`).
     This happens between two steps, and balances count it as no change.
 
     rock: model.rock_mass.RockMass; held_below: m, height up to which the end behind is held: what is above may be
@@ -118,12 +118,12 @@ class RockWindow:
         self._hold_sides()
         scene.open_books(moved)
 
-    def let_go(self, distance):
-        """Take the chips away that nothing touches: neither rock, nor another chip, nor the tool, nor what holds the
+    def remove_free_chips(self, distance):
+        """Remove the chips that nothing touches: neither rock, nor another chip, nor the tool, nor what holds the
         window. Their heat goes with them; balances count it as no change. distance: m that the tool has gone."""
         scene, rock, bonds = self.scene, self.rock, self.scene.bonds
         touched = [contact.rock for contact in scene.tool.contact.possible if contact.interaction.isReal]
-        gone = self.record.let_go(
+        gone = self.record.record_free_chips(
             positions=rock_positions(rock), intact=bonds.status == INTACT, distance=distance,
             pairs=np.concatenate([rock.pairs[bonds.in_contact()], scene.rock_friction.touching_pairs()]),
             held=np.concatenate([self.held, touched]).astype(int))
@@ -133,7 +133,7 @@ class RockWindow:
         rock.absent[gone] = True
         self._put_aside(gone)
         O.interactions.eraseNonReal()
-        left = (bonds.status != SEPARATED) & np.isin(rock.pairs, gone).any(axis=1)
+        left = np.isin(rock.pairs, gone).any(axis=1)
         bonds.renew(np.flatnonzero(left), np.zeros(0, int), np.zeros(0))
         self.cleared += len(gone)
         scene.open_books(gone)

@@ -164,7 +164,7 @@ class SteadyCut(Programme):
             return True
         self.window.follow(self.way)
         if self.chips_leave:
-            self.window.let_go(self.way)
+            self.window.remove_free_chips(self.way)
         self.since = O.iter
         ramp = 2 * self.ramp_length / self.velocity
         reached = (self.step + 0.5 * self.scene.chunk) * self.scene.time_step

@@ -50,7 +50,7 @@ def test_the_check_leaves_vectors_as_they_are(found):
 
 
 def test_contacts_stay_where_they_are_until_they_are_searched_again(tmp_path):
-    # A place that YADE has given back would end the process sooner or later.
+    # Of a contact that YADE has erased, engines would read old numbers.
     file = tmp_path / "found.json"
     done = run_script(ROOT / "tests/scenes/scripts/places.py", str(file), "--out", str(tmp_path / "out"))
     assert done.code == 0, done.stderr

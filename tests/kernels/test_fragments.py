@@ -4,7 +4,7 @@ import math
 import numpy as np
 import pytest
 
-from rockwear.kernels.fragments import LEAST_PARTICLES, chip_length, flying, fragments, size_distribution
+from rockwear.kernels.fragments import LEAST_PARTICLES, chip_length, fragments, free_fragments, size_distribution
 
 R = 1e-3
 AREA = math.pi * R**2
@@ -46,9 +46,9 @@ def test_sizes_of_a_turned_bar_and_of_one_disc():
 @pytest.mark.parametrize("pairs, held, gone", [
     ([], [], [0, 1]), ([[0, 1], [18, 19]], [], [0, 1]), ([[5, 20]], [], [1]), ([[28, 20]], [], []),
     ([], [27], [1]), ([[28, 3]], [], [0]), ([], [2], [0, 1])])
-def test_pieces_fly_that_neither_rock_nor_another_piece_nor_anything_else_touches(pairs, held, gone):
+def test_pieces_are_free_that_neither_rock_nor_another_piece_nor_anything_else_touches(pairs, held, gone):
     label = fragments(**rock()).label
-    found = flying(label, pairs, np.array(held, int))
+    found = free_fragments(label, pairs, np.array(held, int))
     assert found.tolist() == [piece in gone for piece in label.tolist()]
 
 

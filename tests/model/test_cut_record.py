@@ -69,7 +69,7 @@ def test_what_still_lies_in_the_window_counts_at_the_end_without_changing_the_re
 
 
 @pytest.mark.parametrize("slabs", [0, 3])
-def test_a_chip_that_is_let_go_counts_once_also_where_its_first_slab_has_left(rock, slabs):
+def test_a_free_chip_that_is_removed_counts_once_also_where_its_first_slab_has_left(rock, slabs):
     chip = chip_of(rock)
     intact, record = cut_through(rock, chip)
     drive(rock, intact, record, slabs)
@@ -78,8 +78,8 @@ def test_a_chip_that_is_let_go_counts_once_also_where_its_first_slab_has_left(ro
     assert (record.booked & chip).any() == (slabs > 0)
     touched = np.flatnonzero(chip & ~rock.absent)[:1]
     there = dict(positions=rock.places, intact=intact & rock.bonded, distance=0.03, pairs=rock.pairs[:0])
-    assert not np.isin(touched, record.let_go(**there, held=touched)).any()
-    gone = record.let_go(**there, held=touched[:0])
+    assert not np.isin(touched, record.record_free_chips(**there, held=touched)).any()
+    gone = record.record_free_chips(**there, held=touched[:0])
     assert np.isin(touched, gone).all() and not record.booked[gone].any()
     rock.absent[gone] = True
     drive(rock, intact, record, 6)

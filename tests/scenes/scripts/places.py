@@ -1,5 +1,5 @@
 """Whether contacts that engines keep by their places in memory are among YADE's in every step of a cut; writes
-{"steps", "searches", "lost": numbers, "advances"} to FILE.
+{"steps", "searches", "lost", "moved", "cracks", "worn": numbers} to FILE.
 
     yade -n -x places.py FILE --out DIR
 """
