@@ -27,6 +27,11 @@ def possible_contacts(particles, others=np.empty(0, int)):
     return compiled.between_rock(WORDS, kernel_layout(), list_of_contacts(), particles, others)
 
 
+def _row(contact):
+    """(place in memory, body, body) of a contact of YADE's."""
+    return place(contact), contact.id1, contact.id2
+
+
 class RockContacts(Engine):
     """Contacts between rock particles that are no bonds, and the friction energy dissipated there, `total` (J).
 
@@ -44,32 +49,22 @@ class RockContacts(Engine):
     def connect(self):
         self.layout, self.body_list = kernel_layout(), list_of_bodies()
         self.motion.connect()
-        self.held, self.places = {}, np.zeros(0, np.int64)
         self.find_contacts()
 
     def find_contacts(self):
-        """Find the contacts between rock particles that are no bonds, and the pairs that may touch before the collider
-        runs again or a bond parts: their `places` (k,) in memory."""
+        """Find the contacts between rock particles that are no bonds, and the pairs that may touch: `places` (k, 3),
+        where they lie in memory and their bodies.
+
+        There they stay until the collider runs again or one of their bodies is erased: no other step of YADE's loop
+        erases a contact for good. Who erases one from Python has contacts found anew before the loop goes on.
+        """
         self.collider = yade_engine(InsertionSortCollider)
         self.seen = self.collider.numAction
         self.bonds.parted.clear()
-        found = possible_contacts(self.particles, bond_classes())
-        # In the order of their bodies: a loaded scene has them in another order.
-        places, new, gone = compiled.changes(found, self.particles, self.places)
-        # What Python holds keeps its place in memory, also where YADE erases it, with one of its bodies. So a place
-        # that is known is the contact that it was.
-        for where in gone.tolist():
-            del self.held[where]
-        for where, *pair in found[new].tolist():
-            # YADE would end where it is asked for contacts of an erased body.
-            if all(O.bodies[body] for body in pair):
-                self.held[where] = contact_of(*pair)
-        if len(self.held) < len(places):
-            places = places[[where in self.held for where in places.tolist()]]
-        self.places = places
+        self.places = compiled.by_bodies(possible_contacts(self.particles, bond_classes()), self.particles)
 
     def _keep_up(self):
-        """Bring `possible` up to date, where the collider has run or bonds have parted since."""
+        """Bring `places` up to date, where the collider has run or bonds have parted since."""
         if self.collider.numAction != self.seen:
             self.find_contacts()
         elif self.bonds.parted:
@@ -81,23 +76,16 @@ class RockContacts(Engine):
         for n in self.bonds.parted:
             pair = tuple(self.bonds.pairs[n].tolist())
             if self.bonds.status[n] == SEPARATED and all(O.bodies[i] for i in pair) and O.interactions.has(*pair):
-                interaction = contact_of(*pair)
-                where = place(interaction)
-                if where not in self.held:
-                    self.held[where] = interaction
-                    added.append(where)
+                row = _row(contact_of(*pair))
+                if not (self.places == row).all(axis=1).any():
+                    added.append(row)
         self.bonds.parted.clear()
-        self.places = np.concatenate([self.places, np.array(added, np.int64)])
-
-    @property
-    def possible(self):
-        """The pairs that may be in contact, in the order of `places`."""
-        return [self.held[where] for where in self.places.tolist()]
+        self.places = np.concatenate([self.places, np.array(added, np.int64).reshape(-1, 3)])
 
     @property
     def contacts(self):
-        """Those of the pairs that `find_contacts` found that are in contact now."""
-        return [i for i in self.possible if i.isReal]
+        """YADE's contacts of the pairs that `find_contacts` found that are in contact now."""
+        return [contact_of(*pair) for pair in self.touching_pairs().tolist()]
 
     def touching_pairs(self):
         """(k, 2) bodies of the pairs that `find_contacts` found that are in contact now."""
@@ -112,7 +100,7 @@ class RockContacts(Engine):
 class RockFriction(RockContacts):
     """Friction work between rock particles, by particle, sampled at each visit.
 
-    A contact that slides dissipates |Ft| times the irreversible slip (kernels.compiled.friction_work), over the mean of
+    A contact that slides dissipates |Ft| times the irreversible slip (kernels.compiled.rub), over the mean of
     the velocities before and after the integrator, whose change `motion` predicts. (YADE's sum of plastic dissipation
     is not used: it takes the force after the slip for the mean force, and omits the shear spring of a contact that
     opens. Where particles collide, each time for a few steps, it misses a fifth of the work.)
@@ -127,8 +115,8 @@ class RockFriction(RockContacts):
         elapsed = self.elapsed()
         self._keep_up()
         # What is open has no force.
-        broken = [place(contact) for contact, phys in self.bonds.broken.values() if phys.crackJointAperture == 0.0]
-        contacts = np.concatenate([broken, self.places]).astype(np.int64) if broken else self.places
+        broken = [_row(contact) for contact, phys in self.bonds.broken.values() if phys.crackJointAperture == 0.0]
+        contacts = np.concatenate([broken, self.places]) if broken else self.places
         friction = np.full(len(contacts), np.nan)
         friction[:len(broken)] = self.bonds.law.mu
         if len(contacts):

@@ -632,29 +632,24 @@ def between_rock(words, layout, contacts, particles, others):
 
 
 @compiled
-def changes(found, particles, held):
-    """Of contacts (k, 3), places and bodies, below `particles`: the places (k,) in the order of their bodies, which
-    (l,) are not among the places `held` (m,), and those of the held that are not found."""
-    before = np.sort(held)
-    there, new, count = np.zeros(len(before), np.bool_), np.empty(len(found), np.int64), 0
-    for k in range(len(found)):
-        at = np.searchsorted(before, found[k, 0])
-        if at < len(before) and before[at] == found[k, 0]:
-            there[at] = True
-        else:
-            new[count] = k
-            count += 1
-    order = np.argsort(found[:, 1] * particles + found[:, 2])
-    return found[order, 0].copy(), new[:count].copy(), before[~there].copy()
+def by_bodies(found, particles):
+    """Contacts (k, 3), places and bodies below `particles`, in the order of their bodies: a loaded scene has them in
+    another order."""
+    return found[np.argsort(found[:, 1] * particles + found[:, 2])]
+
+
+@compiled
+def touches(words, layout, bodies, contact, first, second):
+    """Whether two bodies are in contact now. contact: its place, no longer that of a contact where one was erased."""
+    return is_there(words, bodies, first) and is_there(words, bodies, second) and is_real(words, layout, contact)
 
 
 @compiled
 def touching(words, layout, bodies, contacts):
-    """(l, 2) bodies, both of which are there, of those of these places (k,) that are in contact now."""
+    """(l, 2) bodies of those of the contacts (k, 3), places and bodies, that are in contact now."""
     found, count = np.empty((len(contacts), 2), np.int64), 0
-    for contact in contacts:
-        first, second = ends_of(words, layout, contact)
-        if is_real(words, layout, contact) and is_there(words, bodies, first) and is_there(words, bodies, second):
+    for contact, first, second in contacts:
+        if touches(words, layout, bodies, contact, first, second):
             found[count, 0], found[count, 1] = first, second
             count += 1
     return found[:count].copy()
@@ -663,25 +658,24 @@ def touching(words, layout, bodies, contacts):
 @compiled
 def rub(memory, words, layout, bodies, forces, torques, contacts, friction, per_mass, per_inertia, radii, elapsed, dt,
         work):
-    """Add the friction work (J) of those contacts (k,) of particles that slide now to `work` (n,). -> J, of all.
+    """Add the friction work (J) of those contacts (k, 3) of particles that slide now to `work` (n,). -> J, of all.
 
-    forces, torques: see `exerted`; contacts: places; friction: (k,), nan where YADE has it; per_mass, per_inertia,
-    radii: (n,) 1/kg, 1/(kg m2), m; elapsed: s, for which this step stands, of dt (s). The work is |Ft| times the
-    irreversible slip [Rojek 2014, eq. 36], which is the slip less what a rising limit mu |Fn| lets the spring take up.
-    The velocity is the mean of those before and after the step.
+    forces, torques: see `exerted`; contacts: places and bodies; friction: (k,), nan where YADE has it; per_mass,
+    per_inertia, radii: (n,) 1/kg, 1/(kg m2), m; elapsed: s, for which this step stands, of dt (s). The work is |Ft|
+    times the irreversible slip [Rojek 2014, eq. 36], which is the slip less what a rising limit mu |Fn| lets the spring
+    take up. The velocity is the mean of those before and after the step.
     """
     total = 0.0
-    for k, contact in enumerate(contacts):
-        if not is_real(words, layout, contact):
+    for k in range(len(contacts)):
+        contact, first, second = contacts[k]
+        if not touches(words, layout, bodies, contact, first, second):
             continue
         phys = pointed(words[contact + layout[CONSTANTS]])
         mu, shear = friction[k], read(memory, phys + layout[OF_SHEAR])
         if math.isnan(mu):
             mu = memory[phys + layout[FRICTION]]
         limit, tangential = mu * norm(read(memory, phys + layout[OF_NORMAL])), norm(shear)
-        first, second = ends_of(words, layout, contact)
-        if (not tangential > SLIDING * limit > 0.0
-                or not is_there(words, bodies, first) or not is_there(words, bodies, second)):
+        if not tangential > SLIDING * limit > 0.0:
             continue
         normal = read(memory, pointed(words[contact + layout[GEOMETRY]]) + layout[DIRECTION])
         of_first, of_second = velocities(memory, words, layout, bodies, contact)

@@ -67,7 +67,7 @@ from rockwear.scenes.tool_bodies import FacetBodies, ToolBodies
 
 SAVED, AFTER = 134, 101
 """Steps to the checkpoint and from there; no period of an engine divides the first."""
-TRANSIENT = {"wall_time", "visits", "held", "places", "body_list", "where", "counted"}
+TRANSIENT = {"wall_time", "visits", "places", "body_list", "where", "counted"}
 """Attributes of engines that a restart resets or counts anew, or finds elsewhere in memory."""
 RADIUS, KN, KT, RN, MU = 1e-3, 2e10, 1e10, 1e5, 0.5
 STRENGTH = dict(kn=KN, kt=KT, mu=MU, Rn=RN, Rt=RN)

@@ -31,7 +31,7 @@ class Probe(base.Engine):
     def act(self):
         friction, contact = self.scene.rock_friction, self.scene.tool.contact
         if friction.collider.numAction == friction.seen:
-            kept = np.concatenate([friction.places, contact.places])
+            kept = np.concatenate([friction.places[:, 0], contact.places])
             self.lost += int(np.count_nonzero(~np.isin(kept, all_contacts())))
             self.steps += 1
             self.searches.add(friction.seen)
