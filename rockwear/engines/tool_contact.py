@@ -85,29 +85,28 @@ class ToolContact(Engine):
         known = dict(zip(self.places.tolist(), range(len(self.places))))
         rows = [known.get(at, -1) for at in where.tolist()]
         self._keep([self.possible[row] if row >= 0 else _contact(*one, at)
-                    for row, one, at in zip(rows, found, where.tolist())], rows)
+                    for row, one, at in zip(rows, found, where.tolist())], np.array(rows, int))
 
     def forget_erased(self):
         """Sample contacts of erased bodies, which still look real, no more."""
         rows = [k for k, contact in enumerate(self.possible) if contact.piece in self.tool.body_of]
-        self._keep([self.possible[row] for row in rows], rows)
+        self._keep([self.possible[row] for row in rows], np.array(rows, int))
 
     def _keep(self, contacts, rows):
-        """These are the possible contacts from now on; rows: their numbers until now, -1 of new ones."""
+        """These are the possible contacts from now on; rows (k,): their numbers until now, -1 of new ones."""
         left = np.ones(len(self.possible), bool)
-        left[[row for row in rows if row >= 0]] = False
+        left[rows[rows >= 0]] = False
         for k in np.flatnonzero(left & (self.seconds > 0.0)).tolist():
             self.touched[self.possible[k][1:3]] = self.seconds[k]
-        # The last row is that of contacts that are not known.
+        # The last row, or column, is that of contacts that are not known.
         self.before = np.append(self.before, np.zeros((1, 4)), axis=0)[rows]
         self.seconds = np.append(self.seconds, 0.0)[rows]
-        for k, row in enumerate(rows):
-            if row < 0:
-                # A pair may come back.
-                self.seconds[k] = self.touched.pop(contacts[k][1:3], 0.0)
-        self.possible = contacts
-        numbers = np.array([contact[1:] for contact in contacts], np.int64).reshape(-1, 4).T.copy()
-        self.parts, self.places = numbers[:3], numbers[3]
+        numbers = np.append(np.vstack([self.parts, self.places]), np.zeros((4, 1), np.int64), axis=1).take(rows, axis=1)
+        for k in np.flatnonzero(rows < 0).tolist():
+            numbers[:, k] = contacts[k][1:]
+            # A pair may come back.
+            self.seconds[k] = self.touched.pop(contacts[k][1:3], 0.0)
+        self.possible, self.parts, self.places = contacts, numbers[:3], numbers[3]
 
     def touching(self):
         """{(piece, rock): s in contact since `take_heating`}."""
