@@ -5,6 +5,7 @@ import pytest
 from rockwear.model.materials import Material
 from rockwear.model.particle_tool import Tool
 from rockwear.model.thermal_body import ParticleBody
+from rockwear.report.folder import read_history
 from tests.running import ROOT, SMALL, arguments, last_snapshot, run_script, value
 
 TINY = {**{name: v for name, v in SMALL.items() if name not in ("cycles", "cycle_time")}, "report": "false"}
@@ -61,6 +62,14 @@ def test_conduction_changes_temperatures_alone(heated):
     tools = [last_snapshot(run.out)["temperature"][-value(run, "tool_particles"):] > 293.1501 for run in (spread, kept)]
     # It reaches particles that rub nowhere.
     assert tools[0][tools[1]].all() and tools[0].sum() > 2 * tools[1].sum()
+
+
+def test_each_row_counts_the_cracks_up_to_its_time(heated):
+    rows, cracks = (read_history(heated["true"].out / name)[0] for name in ("history.csv", "cracks.csv"))
+    for mode, name in ((1, "tensile_cracks"), (2, "shear_cracks")):
+        times = np.array(cracks["time"])[np.array(cracks["mode"]) == mode]
+        assert np.array_equal(rows[name], (times <= np.array(rows["time"])[:, None]).sum(axis=1))
+    assert len(set(rows["tensile_cracks"])) > 10
 
 
 @pytest.mark.parametrize("conduction", ["true", "false"])
