@@ -84,11 +84,12 @@ class RockContacts(Engine):
 
     @property
     def contacts(self):
-        """YADE's contacts of the pairs that `find_contacts` found that are in contact now."""
+        """YADE's contacts of the pairs that are in contact now."""
         return [contact_of(*pair) for pair in self.touching_pairs().tolist()]
 
     def touching_pairs(self):
-        """(k, 2) bodies of the pairs that `find_contacts` found that are in contact now."""
+        """(k, 2) bodies of the pairs that are in contact now."""
+        self._keep_up()
         return compiled.touching(WORDS, self.layout, self.body_list, self.places)
 
     def elastic_energy(self):

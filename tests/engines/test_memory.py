@@ -55,6 +55,7 @@ def test_contacts_stay_where_they_are_until_they_are_searched_again(tmp_path):
     done = run_script(ROOT / "tests/scenes/scripts/places.py", str(file), "--out", str(tmp_path / "out"))
     assert done.code == 0, done.stderr
     found = json.loads(file.read_text(encoding="utf-8"))
+    assert found["wrong"] == 0 and found["asked late"] > 100
     assert found["lost"] == 0 and found["steps"] > 5000 and found["searches"] > 100
     assert found["moved"] > 50 and found["cracks"] > 100 and found["worn"] > 0
 

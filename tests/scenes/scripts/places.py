@@ -1,5 +1,6 @@
-"""Whether contacts that engines keep by their places in memory are among YADE's in every step of a cut; writes
-{"steps", "searches", "lost", "moved", "cracks", "worn": numbers} to FILE.
+"""Whether contacts that engines keep by their places in memory are among YADE's in every step of a cut, and those said
+to touch are those that do; writes {"steps", "searches", "lost", "asked late", "wrong", "moved", "cracks", "worn":
+numbers} to FILE.
 
     yade -n -x places.py FILE --out DIR
 """
@@ -8,6 +9,7 @@ import os
 import sys
 
 import numpy as np
+from yade import FrictPhys, O
 
 from rockwear.engines import base
 from rockwear.engines.memory import all_contacts
@@ -16,17 +18,19 @@ from rockwear.run.main import COMMON
 from rockwear.scenes import steady_cut
 
 CUT = dict(discs_per_depth=4, depth_of_cut=2e-3, tip_radius=2e-4, velocity=40.0, cut_length=0.01, heat=True,
-           wear_acceleration=2000.0)
+           wear_acceleration=2000.0, rock_sampling_period=100)
+ASKED = 20
+"""Steps between looks at the pairs that touch."""
 
 
 class Probe(base.Engine):
-    """Compares, in each step in which nobody has to search anew."""
+    """Compares places in each step in which nobody has to search anew, and pairs now and then in any."""
 
     name, phase = "probe", base.FORCES
 
     def __init__(self, scene):
         super().__init__()
-        self.scene, self.steps, self.searches, self.lost = scene, 0, set(), 0
+        self.scene, self.steps, self.searches, self.lost, self.late, self.wrong = scene, 0, set(), 0, 0, 0
 
     def act(self):
         friction, contact = self.scene.rock_friction, self.scene.tool.contact
@@ -35,6 +39,12 @@ class Probe(base.Engine):
             self.lost += int(np.count_nonzero(~np.isin(kept, all_contacts())))
             self.steps += 1
             self.searches.add(friction.seen)
+        if O.iter % ASKED == 0:
+            self.late += friction.collider.numAction != friction.seen
+            count = friction.particles
+            there = {tuple(sorted((i.id1, i.id2))) for i in O.interactions
+                     if max(i.id1, i.id2) < count and type(i.phys) is FrictPhys}
+            self.wrong += len(there ^ set(map(tuple, np.sort(friction.touching_pairs(), axis=1).tolist())))
 
 
 def main():
@@ -51,8 +61,9 @@ def main():
         scene.run_chunk()
     moved = int(np.any(scene.programme.window.rock.places != before, axis=1).sum())
     with open(file, "w", encoding="utf-8") as out:
-        json.dump({"steps": probe.steps, "searches": len(probe.searches), "lost": probe.lost, "moved": moved,
-                   "cracks": len(scene.bonds.cracks), "worn": scene.tool.volume_balance()["archard"]}, out)
+        json.dump({"steps": probe.steps, "searches": len(probe.searches), "lost": probe.lost, "asked late": probe.late,
+                   "wrong": probe.wrong, "moved": moved, "cracks": len(scene.bonds.cracks),
+                   "worn": scene.tool.volume_balance()["archard"]}, out)
     os._exit(0)
 
 
