@@ -37,8 +37,7 @@ SAMPLED = 6000
 def every_step(scene):
     """Sample every step from now on."""
     scene.bonds.between_samples = scene.rock_friction.period = scene.tool.contact.sampling_period = 1
-    runner, = (engine for engine in O.engines if "rock_friction" in getattr(engine, "command", ""))
-    runner.iterPeriod = 1
+    base.register(scene.engines)
 
 
 def books(scene):
@@ -79,7 +78,7 @@ def timed(scene):
             "seconds": {**seconds, "runners and canonical points": total - yade - float(engines.sum())}}
 
 
-def turns():
+def turns(scene):
     """{"alive" and "dead" engines: [s of YADE's own time a step]} in turns, from where the cut is.
 
     (What the engines take is not: right after a rest they have more to do.)
@@ -88,6 +87,7 @@ def turns():
     runners = [engine for engine in O.engines if isinstance(engine, PyRunner)]
     for _ in range(TURNS):
         for engines, seconds in found.items():
+            base.register(scene.engines if engines == "alive" else [])
             for runner in runners:
                 runner.dead = engines == "dead"
             begin = base.yade_time
@@ -118,7 +118,7 @@ def main():
         scene.run_chunk()
     cost, state, steps = timed(scene), scene.state(), critical_steps(scene)
     scene.save(folder, folder)
-    cost["turns"] = turns()
+    cost["turns"] = turns(scene)
     found, depth = sampled(scene, state, folder)
     exact, exact_depth = sampled(scene, state, folder, every_step)
     off = float(np.abs(depth - exact_depth).sum() / exact_depth.sum())

@@ -13,6 +13,7 @@ from yade import O
 
 from calibration.laboratory.loading import SCALED, LoadedRock
 from rockwear.engines import access
+from rockwear.engines.base import FORCES
 from rockwear.engines.energy_guard import EnergyGuard
 from rockwear.engines.failure import Failure
 from rockwear.engines.platens import Platens
@@ -229,6 +230,8 @@ class SpecimenTest(Scene):
         self.bonds = yade_scene.bonds_engine(rock, self.law, lambda: self.time, **often)
         motion = VelocityIncrement(masses=rock.masses, inertias=rock.inertias, radii=rock.radii, fixed=self.prescribed)
         self.rock_friction = RockFriction(bonds=self.bonds, motion=motion, period=v.rock_sampling_period)
+        # What the integrator's damping has taken cannot be told after it.
+        self.rock_friction.phase = FORCES
         self.platens = Platens(left=self.left.tolist(), right=self.right.tolist(), velocity=self.sign * v.speed,
                                period=min(row, v.rock_sampling_period))
         self.recorder = Recorder([self.output.log, self.bonds.log], period=row)

@@ -1,1 +1,1 @@
-"""Engines that run from YADE's loop by PyRunner; one a file."""
+"""Engines that are visited within the steps of YADE's loop, by PyRunner, or between them; one a file."""

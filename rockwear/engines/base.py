@@ -1,4 +1,4 @@
-"""Python engines in YADE's loop: what a visit does, in which phase of the step it comes, what survives a restart."""
+"""Python engines and YADE's loop: what a visit does, whether it comes within a step, what survives a restart."""
 import sys
 from abc import ABC, abstractmethod
 from functools import partial
@@ -6,10 +6,14 @@ from time import perf_counter
 
 from yade import O, PyRunner
 
-PHASES = START, FORCES, MOTION = "start", "forces", "motion"
-"""Phases of a step: before its forces; after the forces and before the integrator; after the integrator."""
+PHASES = FORCES, BETWEEN = "forces", "between steps"
+"""When a visit comes: within a step, after its forces and before the integrator, by a PyRunner in YADE's loop; or
+between two steps, from `run`. A PyRunner takes 10 to 40 us beside what it runs, so that within a step comes only what
+adds to its forces or changes what its integrator takes."""
 
 _registered = {}
+_between = []
+"""(steps between visits, function that makes them) of the engines that come between steps."""
 
 failures = []
 """Exceptions of engines, which YADE's loop would otherwise lose."""
@@ -22,12 +26,12 @@ they call is not in it."""
 class Engine(ABC):
     """One visit in `act`; `state`/`restore` carry what must survive a restart; `log` names what a recorder may write.
 
-    period: steps between visits; None: YADE's loop never calls this engine.
+    period: steps between visits; None: there are none.
     """
 
     name = None
     """The name by which `call` finds the engine, unique in a scene."""
-    phase = MOTION
+    phase = BETWEEN
 
     def __init__(self, *, period=1):
         self.period = period
@@ -38,6 +42,16 @@ class Engine(ABC):
     @abstractmethod
     def act(self):
         """One visit, at the present step."""
+
+    def start_clock(self):
+        """The next step is the first that counts for `elapsed`."""
+        # A runner sits out its first step.
+        self.last_iteration = O.iter - (self.phase == FORCES)
+
+    @property
+    def since(self):
+        """s by which bodies have moved on, at a visit, since the forces of the step."""
+        return 0.0 if self.phase == FORCES else O.dt
 
     def elapsed(self):
         """Simulated seconds since the last call; a visit may come earlier or later than the period says."""
@@ -61,7 +75,7 @@ class Engine(ABC):
 
 
 def call(*names):
-    """One visit of each of the named engines; adds to their wall times. Commands of PyRunners call this."""
+    """One visit of each of the named engines; adds to their wall times."""
     for name in names:
         engine = _registered[name]
         begin = perf_counter()
@@ -74,25 +88,25 @@ def call(*names):
 
 
 def register(engines):
-    """Make these engines, and no others, the ones that `call` finds, also from the runners of a loaded scene."""
+    """Make these engines, and no others, the ones that are visited, also by the runners of a loaded scene."""
     _registered.clear()
     failures.clear()
     _registered.update({engine.name: engine for engine in engines})
-    for phase in PHASES:
-        for names in _groups(engines, phase).values():
-            _command(names)
+    _between[:] = [(period, partial(call, *names)) for period, names in _groups(engines, BETWEEN).items()]
+    for names in _groups(engines, FORCES).values():
+        _command(names)
 
 
 def insert(engines):
-    """Insert PyRunners of these engines into O.engines, whose last one is the integrator, by phase and period.
+    """Insert PyRunners of those of these engines that come within a step into O.engines, whose last one is the
+    integrator.
 
-    Within a phase engines keep their order; those of one period share a runner, at the place of the first of them,
-    because a runner alone costs as much as several short visits.
+    They keep their order; those of one period share a runner, at the place of the first of them, because a runner alone
+    costs as much as several short visits.
     """
-    start, forces, motion = ([PyRunner(command=_command(names), iterPeriod=period, updateGlobals=False)
-                              for period, names in _groups(engines, phase).items()]
-                             for phase in PHASES)
-    O.engines = start + O.engines[:-1] + forces + O.engines[-1:] + motion
+    runners = [PyRunner(command=_command(names), iterPeriod=period, updateGlobals=False)
+               for period, names in _groups(engines, FORCES).items()]
+    O.engines = O.engines[:-1] + runners + O.engines[-1:]
 
 
 def _groups(engines, phase):
@@ -112,18 +126,24 @@ def _command(names):
     return f"{function}()"
 
 
-def run(steps):
-    """Run YADE's loop for so many steps. Raises what an engine raised, RunEnded among it.
+def run(steps, skipped=0):
+    """Run YADE's loop for so many steps, and visit the engines that come between them. Raises what an engine raised,
+    RunEnded among it.
 
-    (O.run waits in slices of 40 ms, which a short run would spend asleep.)
+    skipped: steps that YADE has counted and that count for no period. (O.run waits in slices of 40 ms, which a short
+    run would spend asleep.)
     """
     global yade_time
     O.timingEnabled = True
     native = [engine for engine in O.engines if not isinstance(engine, PyRunner)]
     before = sum(engine.execTime for engine in native)
+    begin = O.iter - skipped
     try:
-        for _ in range(steps):
+        for step in range(begin + 1, begin + steps + 1):
             O.step()
+            for period, visit in _between:
+                if step % period == 0:
+                    visit()
             if failures:
                 raise failures.pop()
     finally:

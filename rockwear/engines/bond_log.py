@@ -4,7 +4,7 @@ from collections import namedtuple
 
 import numpy as np
 
-from rockwear.engines.base import FORCES, Engine
+from rockwear.engines.base import Engine
 
 INTACT, BROKEN, SEPARATED = 0, 1, 2
 """Status of a bond. SEPARATED: broken and erased after its particles had parted; a later contact is a new one."""
@@ -23,7 +23,6 @@ class BondLog(Engine):
     """
 
     name = "bonds"
-    phase = FORCES
 
     def __init__(self, *, pairs, law, laws=None, clock, period=1):
         super().__init__(period=period)

@@ -5,6 +5,7 @@ import numpy as np
 from yade import Ig2_Sphere_Sphere_ScGeom, Law2_ScGeom_JCFpmPhys_JointedCohesiveFrictionalPM, O, Vector3
 
 from rockwear.engines.access import body_erased, contact_of, geometry_functor, law_functor
+from rockwear.engines.base import FORCES
 from rockwear.engines.bond_log import BROKEN, INTACT, SEPARATED, BondLog, Crack
 from rockwear.engines.bonding_normals import BondingNormals
 from rockwear.engines.softening import SofteningBond, from_rows, set_elastic_domain, to_rows
@@ -58,6 +59,8 @@ class Bonds(BondLog):
     only, and the strain energy that YADE's law kept of the last step gives the length. The same holds for all bonds
     where shear follows the points of contact (avoidGranularRatcheting off), which normals do not represent.
     """
+
+    phase = FORCES
 
     def __init__(self, **common):
         super().__init__(**common)

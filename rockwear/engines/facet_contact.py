@@ -5,6 +5,7 @@ import numpy as np
 from yade import O, Vector3
 
 from rockwear.engines.access import contact_energy, yade_friction_law
+from rockwear.engines.base import FORCES
 from rockwear.engines.memory import MEMORY, WORDS
 from rockwear.engines.tool_contact import ToolContact
 from rockwear.kernels import compiled
@@ -52,6 +53,7 @@ class FacetContact(ToolContact):
     times the force after it. Every step is sampled.
     """
 
+    phase = FORCES
     # A duplicate has no force, and no contact time in which heat would pass.
     least_stiffness = INACTIVE_STIFFNESS
 
@@ -198,7 +200,7 @@ class FacetContact(ToolContact):
         """Take the contact's force off the particle in this step, and its friction off YADE's sum of plastic
         dissipation."""
         interaction, _, rock, tool_first, where = contact
-        slip = compiled.tool_slip(MEMORY, WORDS, self.layout, self.body_list, where,
+        slip = compiled.tool_slip(MEMORY, WORDS, self.layout, self.body_list, self.motion.tables, self.since, where,
                                   self.before[self.possible.index(contact)], O.dt)
         counted = slip * interaction.phys.shearForce.norm()
         self.functor.initPlasticDissipation(self.functor.plasticDissipation() - counted)
@@ -217,7 +219,8 @@ class FacetContact(ToolContact):
                  - outwards(acting) * interaction.geom.penetrationDepth) * interaction.phys.kn
         O.forces.addF(rock, force)
         self.totals[compiled.IMPULSE:] -= np.array(force) * O.dt
-        of_first, of_second = compiled.velocities(MEMORY, WORDS, self.layout, self.body_list, where)
+        of_first, of_second = compiled.velocities(MEMORY, WORDS, self.layout, self.body_list, self.motion.tables,
+                                                  self.since, where)
         self.totals[compiled.TOOL_WORK] += force.dot(Vector3(*(of_first if tool_first else of_second))) * O.dt
 
     def _joined_energy(self, pair, depth_of):

@@ -173,6 +173,24 @@ def _position():
     return found[0]
 
 
+DEGREES = "xyzXYZ"
+"""Degrees of freedom of a body, as YADE names them: the bits of its mask of blocked ones, the lowest first."""
+
+
+@cache
+def _blocked():
+    """How far behind a body's state YADE keeps the mask of its blocked degrees of freedom. Raises ParameterError."""
+    states, same = [State() for _ in range(TRIED)], np.ones(REACH, bool)
+    for k, state in enumerate(states):
+        mask = 11 * (k + 1) % 64
+        state.blockedDOFs = "".join(name for bit, name in enumerate(DEGREES) if mask >> bit & 1)
+        near = _peek(SIZE * (place(state) + 1), REACH, np.int64)
+        same &= near & 0xffffffff == mask if len(near) == REACH else False
+    found = np.flatnonzero(same)
+    require_memory(len(found) == 1, "blocked degrees of freedom")
+    return int(found[0])
+
+
 class Motions(Places):
     """Where these bodies are and how they move now; here they are numbered from 0. bodies: ids.
 
@@ -245,7 +263,7 @@ def contact_columns(*names):
 
 @cache
 def kernel_layout():
-    """(17,) what compiled.CONTACT says, of contacts and of bodies. Raises ParameterError."""
+    """(18,) what compiled.CONTACT says, of contacts and of bodies. Raises ParameterError."""
     bodies, states = [Body() for _ in range(TRIED)], [State() for _ in range(TRIED)][::-1]
     for body, state in zip(bodies, states):
         # The state a body is made with can lie right behind it, and with it a second pointer to that state.
@@ -253,7 +271,7 @@ def kernel_layout():
     found = {**contact_layout(), "state": offset("state", bodies, [SIZE * (place(state) + 1) for state in states]),
              **{name: place(getattr(states[0], of)) - place(states[0])
                 for name, of in (("velocity", "vel"), ("spin", "angVel"))}}
-    found["position"] = found["velocity"] + _position()
+    found["position"], found["blocked"] = found["velocity"] + _position(), _blocked()
     return np.array([found[name] for name in compiled.CONTACT])
 
 
@@ -309,6 +327,10 @@ def _word_with_forces(scene):
         exerted = [[tuple(given(body)) for body in bodies[:last]] for given in (O.forces.f, O.forces.t)]
         if all(np.array_equal([compiled.exerted(MEMORY, WORDS, scene + word + behind, body) for body in bodies[:last]],
                               values) for behind, values in zip((0, TORQUES), exerted)):
+            # To have their values YADE would have to make the sums, which changes what it has.
+            summed = scene + 1 + word + compiled.SUMMED
+            require_memory(all(_is_list(_peek(SIZE * (summed + behind), 3, np.int64).tolist())
+                               for behind in (0, TORQUES)), "sum of forces")
             return word
     require_memory(False, "forces")
     return None

@@ -18,5 +18,4 @@ class PathFollower(Engine):
         self.bodies, self.clock = bodies, clock
 
     def act(self):
-        # After the integrator positions are already those of the next step.
-        self.bodies.aim(self.clock() + O.dt, self.period * O.dt)
+        self.bodies.aim(self.clock(), self.period * O.dt)

@@ -6,7 +6,7 @@ import numpy as np
 from yade import CpmPhys, InsertionSortCollider, JCFpmPhys, O
 
 from rockwear.engines.access import contact_energy, contact_of, yade_engine, yade_friction_law
-from rockwear.engines.base import FORCES, Engine
+from rockwear.engines.base import Engine
 from rockwear.engines.bond_log import SEPARATED
 from rockwear.engines.memory import (
     MEMORY, WORDS, class_of, kernel_layout, list_of_bodies, list_of_contacts, place)
@@ -39,12 +39,11 @@ class RockContacts(Engine):
     """
 
     name = "rock_friction"
-    phase = FORCES
 
     def __init__(self, *, bonds, motion, period=1):
         super().__init__(period=period)
         self.bonds, self.motion = bonds, motion
-        self.particles = len(motion.per_mass)
+        self.particles = motion.count
 
     def connect(self):
         self.layout, self.body_list = kernel_layout(), list_of_bodies()
@@ -102,7 +101,7 @@ class RockFriction(RockContacts):
     """Friction work between rock particles, by particle, sampled at each visit.
 
     A contact that slides dissipates |Ft| times the irreversible slip (kernels.compiled.rub), over the mean of
-    the velocities before and after the integrator, whose change `motion` predicts. (YADE's sum of plastic dissipation
+    the velocities before and after the integrator, whose change `motion` tells. (YADE's sum of plastic dissipation
     is not used: it takes the force after the slip for the mean force, and omits the shear spring of a contact that
     opens. Where particles collide, each time for a few steps, it misses a fifth of the work.)
     """
@@ -121,10 +120,9 @@ class RockFriction(RockContacts):
         friction = np.full(len(contacts), np.nan)
         friction[:len(broken)] = self.bonds.law.mu
         if len(contacts):
-            motion = self.motion
             self.total += compiled.rub(
-                MEMORY, WORDS, self.layout, self.body_list, *motion.lists, contacts, friction, motion.per_mass,
-                motion.per_inertia, motion.radii, elapsed, O.dt, self.work)
+                MEMORY, WORDS, self.layout, self.body_list, self.motion.tables, self.since, contacts, friction, elapsed,
+                O.dt, self.work)
 
     def take_work(self):
         """(n,) friction work (J) of each particle since the last call."""

@@ -4,7 +4,7 @@ from yade import O
 
 from rockwear.kernels.shear_rotation import shear_to_start_from, turning_rates
 from rockwear.engines.access import states
-from rockwear.engines.base import START, Engine
+from rockwear.engines.base import Engine
 from rockwear.engines.bond_log import INTACT
 
 FAST = 0.003
@@ -24,7 +24,6 @@ class ShearRotation(Engine):
     """
 
     name = "shear_rotation"
-    phase = START
 
     def __init__(self, *, bonds, radii, period=1):
         super().__init__(period=period)

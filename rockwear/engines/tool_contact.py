@@ -6,7 +6,7 @@ import numpy as np
 from yade import InsertionSortCollider, O
 
 from rockwear.engines.access import contact_energy, yade_engine
-from rockwear.engines.base import FORCES, Engine
+from rockwear.engines.base import Engine
 from rockwear.engines.memory import MEMORY, WORDS, kernel_layout, list_of_bodies, places
 from rockwear.kernels import compiled
 from rockwear.kernels.wear_laws import NORMAL, WORK
@@ -38,7 +38,6 @@ class ToolContact(Engine):
     """
 
     name = "tool_contact"
-    phase = FORCES
     reshaping_energy = 0.0
     least_stiffness = 0.0
     """N/m, of contacts that count."""
@@ -47,7 +46,7 @@ class ToolContact(Engine):
         super().__init__(period=period)
         self.tool, self.motion, self.sampling_period = tool, motion, sampling_period
         self.tool_work = np.zeros(tool.count)
-        self.rock_work = np.zeros(len(motion.per_mass))
+        self.rock_work = np.zeros(motion.count)
         needs = list(dict.fromkeys((WORK, *needs)))
         self.needs = np.array([[kind == NORMAL, exponent] for kind, exponent in needs], float).T.copy()
         self.totals = np.zeros(6)
@@ -126,11 +125,10 @@ class ToolContact(Engine):
         as YADE counts it."""
         if not len(self.places):
             return 0.0
-        motion = self.motion
         return compiled.sample_tool(
-            MEMORY, WORDS, self.layout, self.body_list, motion.lists[0], self.places,
-            self.least_stiffness, self.parts, self.needs, self.before, motion.per_mass, motion.gravity, elapsed, O.dt,
-            sampled, stored, self.seconds, self.tool_work, self.rock_work, self.sums, self.totals)
+            MEMORY, WORDS, self.layout, self.body_list, self.motion.tables, self.since, self.places,
+            self.least_stiffness, self.parts, self.needs, self.before, elapsed, O.dt, sampled, stored, self.seconds,
+            self.tool_work, self.rock_work, self.sums, self.totals)
 
     @property
     def friction(self):

@@ -4,7 +4,7 @@ import math
 from yade import NewtonIntegrator, O, Vector3
 
 from rockwear.engines import access
-from rockwear.engines.base import START, Engine
+from rockwear.engines.base import Engine
 
 
 class Vibration(Engine):
@@ -18,7 +18,6 @@ class Vibration(Engine):
     """
 
     name = "vibration"
-    phase = START
 
     def __init__(self, *, amplitude, frequency, direction, gravity, clock, period=1):
         super().__init__(period=period)

@@ -372,18 +372,20 @@ def relieve(memory, where, numbers, laws, falls, omega, lengths, dissipated, by_
 # ---- contacts with friction
 
 CONTACT = ("geom", "phys", "bodies", "normal_force", "shear_force", "viscous_force", "friction", "kn", "ks", "cn",
-           "normal", "increment", "point", "state", "velocity", "spin", "position")
-"""What a layout of contacts and bodies says, (17,), of each how far behind it lies: behind a contact, pointers to its
+           "normal", "increment", "point", "state", "velocity", "spin", "position", "blocked")
+"""What a layout of contacts and bodies says, (18,), of each how far behind it lies: behind a contact, pointers to its
 geometry and its constants and its two bodies; behind the constants, the forces (N), the friction, stiffness and damping
 (N/m, N s/m); behind the geometry, the normal, the shear increment (m) of the step and the point of contact (m); behind
-a body, the pointer to its state; behind the state, its motion (m/s, rad/s) and place (m)."""
+a body, the pointer to its state; behind the state, its motion (m/s, rad/s) and place (m), and the mask of its blocked
+degrees of freedom."""
 (GEOMETRY, CONSTANTS, BODIES, OF_NORMAL, OF_SHEAR, OF_DASHPOT, FRICTION, STIFFNESS, SHEAR_STIFFNESS, DAMPING, DIRECTION,
- MOVED, POINT, STATE, VELOCITY, SPIN, POSITION) = range(17)
+ MOVED, POINT, STATE, VELOCITY, SPIN, POSITION, BLOCKED) = range(18)
 """Where in a layout it does."""
 FRICTION_WORK, TOOL_WORK, DASHPOT_WORK, IMPULSE = range(4)
 """Places of what `sample_tool` adds up, of the impulse the first."""
-PERMANENT = 18
-"""Words from the lists of forces, or torques, that YADE's threads add to that of the permanent ones."""
+SUMMED, PERMANENT = 12, 18
+"""Words from the lists of forces, or torques, that YADE's threads add to those of their sums, which the integrator
+makes and takes, and of the permanent ones."""
 SLIDING = 1 - 1e-9
 """|Ft| / mu |Fn| from which a contact slid in this step: YADE's laws return it to Coulomb's limit to round-off. (A
 looser test counts contacts that oscillate near the limit as sliding, and their work adds up.)"""
@@ -458,24 +460,6 @@ def positions(memory, words, layout, bodies, count):
 
 
 @compiled
-def velocity_at(memory, words, layout, bodies, body, point):
-    """m/s of a point (m) of a rigid body that is there."""
-    state = state_of(words, layout, bodies, body)
-    velocity = read(memory, state + layout[VELOCITY])
-    turning = cross(read(memory, state + layout[SPIN]), less(point, read(memory, state + layout[POSITION])))
-    return velocity[0] + turning[0], velocity[1] + turning[1], velocity[2] + turning[2]
-
-
-@compiled
-def velocities(memory, words, layout, bodies, contact):
-    """m/s of the first and of the second body at the point of contact."""
-    first, second = ends_of(words, layout, contact)
-    point = read(memory, pointed(words[contact + layout[GEOMETRY]]) + layout[POINT])
-    return (velocity_at(memory, words, layout, bodies, first, point),
-            velocity_at(memory, words, layout, bodies, second, point))
-
-
-@compiled
 def add(a, b, factor):
     """a + b times a factor, of vectors."""
     return a[0] + b[0] * factor, a[1] + b[1] * factor, a[2] + b[2] * factor
@@ -499,6 +483,24 @@ def exerted(memory, words, lists, body):
 
 
 @compiled
+def taken(memory, words, lists, body):
+    """(3,) N or N m on a body that the integrator took in the step that has just been made. lists: see `exerted`."""
+    one, end = pointed(words[lists + SUMMED]) + 3 * body, pointed(words[lists + SUMMED + 1])
+    if one >= end:
+        # Nothing was ever exerted on a body as far back in the list.
+        return 0.0, 0.0, 0.0
+    return read(memory, one)
+
+
+@compiled
+def acting(memory, words, lists, body, since):
+    """(3,) N or N m on a body in this step. lists: see `exerted`; since: see `velocity_at`."""
+    if since > 0.0:
+        return taken(memory, words, lists, body)
+    return exerted(memory, words, lists, body)
+
+
+@compiled
 def exerted_on(memory, words, lists, numbers):
     """(k, 3) `exerted` on these bodies (k,)."""
     found = np.empty((len(numbers), 3))
@@ -508,8 +510,46 @@ def exerted_on(memory, words, lists, numbers):
 
 
 @compiled
-def tool_slip(memory, words, layout, bodies, contact, before, dt):
-    """Irreversible slip (m) in this step of a contact that slides. before: (3,) N, its shear force before the step.
+def free(vector, blocked):
+    """A vector whose components are 0 where a bit of the mask is set, of the first the lowest bit."""
+    x, y, z = vector
+    return 0.0 if blocked & 1 else x, 0.0 if blocked & 2 else y, 0.0 if blocked & 4 else z
+
+
+@compiled
+def velocity_at(memory, words, layout, bodies, motion, since, body, point):
+    """m/s, before the integrator, of a point (m) of a rigid body that is there.
+
+    motion: places of the pointers to the lists of forces and of torques (see `exerted`), (n,) 1/kg, (n,) 1/(kg m2) and
+    (n,) m of the bodies 0..n-1, and (3,) m/s2 of gravity; since: 0 before the integrator, the time step (s) after it,
+    when bodies have moved on and 0..n-1 are faster by what their forces did.
+    """
+    forces, torques, per_mass, per_inertia, _, gravity = motion
+    state = state_of(words, layout, bodies, body)
+    velocity, spin = read(memory, state + layout[VELOCITY]), read(memory, state + layout[SPIN])
+    place = add(read(memory, state + layout[POSITION]), velocity, -since)
+    if since > 0.0 and body < len(per_mass) and per_mass[body] > 0.0:
+        faster = add((gravity[0], gravity[1], gravity[2]), taken(memory, words, forces, body), per_mass[body])
+        turning = add((0.0, 0.0, 0.0), taken(memory, words, torques, body), per_inertia[body])
+        blocked = words[state + layout[BLOCKED]]
+        velocity = add(velocity, free(faster, blocked), -since)
+        spin = add(spin, free(turning, blocked >> 3), -since)
+    return add(velocity, cross(spin, less(point, place)), 1.0)
+
+
+@compiled
+def velocities(memory, words, layout, bodies, motion, since, contact):
+    """m/s of the first and of the second body at the point of contact, before the integrator; see `velocity_at`."""
+    first, second = ends_of(words, layout, contact)
+    point = read(memory, pointed(words[contact + layout[GEOMETRY]]) + layout[POINT])
+    return (velocity_at(memory, words, layout, bodies, motion, since, first, point),
+            velocity_at(memory, words, layout, bodies, motion, since, second, point))
+
+
+@compiled
+def tool_slip(memory, words, layout, bodies, motion, since, contact, before, dt):
+    """Irreversible slip (m) in this step of a contact that slides. before: (3,) N, its shear force before the step;
+    motion, since: see `velocity_at`.
 
     That is what its spring does not take up, (|trial force| - |Ft|) / ks, less the excess of YADE's slip over that of
     the surfaces at the contact point, over which forces work: YADE rotates spheres about their full radii and scales
@@ -532,7 +572,7 @@ def tool_slip(memory, words, layout, bodies, contact, before, dt):
     slip = max(norm((x, y, z)) - after, 0.0) / ks
     if not (slip > 0.0 and after * length > 0.0):
         return slip
-    first, second = velocities(memory, words, layout, bodies, contact)
+    first, second = velocities(memory, words, layout, bodies, motion, since, contact)
     way = less(second, first)
     excess = dot(force, less((way[0] * dt, way[1] * dt, way[2] * dt), increment)) / after
     # Part of the step's displacement may have gone into the spring.
@@ -540,14 +580,14 @@ def tool_slip(memory, words, layout, bodies, contact, before, dt):
 
 
 @compiled
-def sample_tool(memory, words, layout, bodies, forces, contacts, least, parts, needs, before, per_mass, gravity,
-                elapsed, dt, sampled, stored, seconds, tool_work, rock_work, slid, totals):
+def sample_tool(memory, words, layout, bodies, motion, since, contacts, least, parts, needs, before, elapsed, dt,
+                sampled, stored, seconds, tool_work, rock_work, slid, totals):
     """What contacts of the tool (k,) that are in contact now, and as stiff as `least` (N/m), do in this step.
 
-    forces: see `exerted`; contacts: places; parts: (3, k) piece of the tool, rock particle, and 1 where the tool's body
-    is the first, else 0; needs: (2, e) sums that wear needs, 1 for the force that presses or 0 for friction, and its
-    exponent; before: (k, 4) shear force (N) before the step, and 1 where there was contact; per_mass: (n,) 1/kg of
-    rock, gravity: (3,) m/s2; dt: s.
+    motion, of the rock, since: see `velocity_at`; contacts: places; parts: (3, k) piece of the tool, rock particle, and
+    1 where the tool's body is the first, else 0; needs: (2, e) sums that wear needs, 1 for the force that presses or 0
+    for friction, and its exponent; before: (k, 4) shear force (N) before the step, and 1 where there was contact; dt:
+    s.
 
     Where `sampled`, these are added to for `elapsed` (s), for which this step stands: seconds (k,) in contact;
     tool_work (m,), rock_work (n,) J of friction; slid (e, m), force^exponent times slip; totals (6,): friction, work of
@@ -558,6 +598,7 @@ def sample_tool(memory, words, layout, bodies, forces, contacts, least, parts, n
     after the step, so that the work of the leapfrog integrator and the energy of the springs balance exactly. The
     tool's work is F v dt with the velocity of the tool at the contact point.
     """
+    forces, _, per_mass, _, _, gravity = motion
     in_yade = 0.0
     for k, contact in enumerate(contacts):
         if not is_real(words, layout, contact):
@@ -575,12 +616,12 @@ def sample_tool(memory, words, layout, bodies, forces, contacts, least, parts, n
             push = (normal[0] + shear[0]) * sign, (normal[1] + shear[1]) * sign, (normal[2] + shear[2]) * sign
             for along in range(3):
                 totals[IMPULSE + along] += push[along]
-            of_first, of_second = velocities(memory, words, layout, bodies, contact)
+            of_first, of_second = velocities(memory, words, layout, bodies, motion, since, contact)
             totals[TOOL_WORK] -= dot(push, of_first if tool_first else of_second)
             cn = memory[phys + layout[DAMPING]]
             if cn > 0.0:
                 dashpot = read(memory, phys + layout[OF_DASHPOT])
-                force = exerted(memory, words, forces, rock)
+                force = acting(memory, words, forces, rock, since)
                 faster = per_mass[rock] * dt
                 faster = force[0] * faster, force[1] * faster, force[2] * faster
                 if per_mass[rock] > 0.0:
@@ -589,7 +630,7 @@ def sample_tool(memory, words, layout, bodies, forces, contacts, least, parts, n
                 totals[DASHPOT_WORK] += (dot(dashpot, dashpot) / cn + gain) * elapsed
             after = norm(shear)
             if after > 0.0 and after >= SLIDING * memory[phys + layout[FRICTION]] * norm(normal):
-                slip = tool_slip(memory, words, layout, bodies, contact, before[k], dt) * elapsed / dt
+                slip = tool_slip(memory, words, layout, bodies, motion, since, contact, before[k], dt) * elapsed / dt
                 mean = 0.5 * (norm((before[k, 0], before[k, 1], before[k, 2])) + after)
                 work = mean * slip
                 totals[FRICTION_WORK] += work
@@ -656,15 +697,16 @@ def touching(words, layout, bodies, contacts):
 
 
 @compiled
-def rub(memory, words, layout, bodies, forces, torques, contacts, friction, per_mass, per_inertia, radii, elapsed, dt,
-        work):
-    """Add the friction work (J) of those contacts (k, 3) of particles that slide now to `work` (n,). -> J, of all.
+def rub(memory, words, layout, bodies, motion, since, contacts, friction, elapsed, dt, work):
+    """Add the friction work (J) of those contacts (k, 3) of particles that slide in this step to `work` (n,). -> J, of
+    all.
 
-    forces, torques: see `exerted`; contacts: places and bodies; friction: (k,), nan where YADE has it; per_mass,
-    per_inertia, radii: (n,) 1/kg, 1/(kg m2), m; elapsed: s, for which this step stands, of dt (s). The work is |Ft|
-    times the irreversible slip [Rojek 2014, eq. 36], which is the slip less what a rising limit mu |Fn| lets the spring
-    take up. The velocity is the mean of those before and after the step.
+    motion, since: see `velocity_at`; contacts: places and bodies; friction: (k,), nan where YADE has it; elapsed: s,
+    for which this step stands, of dt (s). The work is |Ft| times the irreversible slip [Rojek 2014, eq. 36], which is
+    the slip less what a rising limit mu |Fn| lets the spring take up. The velocity is the mean of those before and
+    after the step.
     """
+    forces, torques, per_mass, per_inertia, radii, _ = motion
     total = 0.0
     for k in range(len(contacts)):
         contact, first, second = contacts[k]
@@ -678,11 +720,11 @@ def rub(memory, words, layout, bodies, forces, torques, contacts, friction, per_
         if not tangential > SLIDING * limit > 0.0:
             continue
         normal = read(memory, pointed(words[contact + layout[GEOMETRY]]) + layout[DIRECTION])
-        of_first, of_second = velocities(memory, words, layout, bodies, contact)
-        faster = add((0.0, 0.0, 0.0), exerted(memory, words, forces, second), per_mass[second])
-        faster = add(faster, exerted(memory, words, forces, first), -per_mass[first])
-        turn = add((0.0, 0.0, 0.0), exerted(memory, words, torques, first), radii[first] * per_inertia[first])
-        turn = add(turn, exerted(memory, words, torques, second), radii[second] * per_inertia[second])
+        of_first, of_second = velocities(memory, words, layout, bodies, motion, since, contact)
+        faster = add((0.0, 0.0, 0.0), acting(memory, words, forces, second, since), per_mass[second])
+        faster = add(faster, acting(memory, words, forces, first, since), -per_mass[first])
+        turn = add((0.0, 0.0, 0.0), acting(memory, words, torques, first, since), radii[first] * per_inertia[first])
+        turn = add(turn, acting(memory, words, torques, second, since), radii[second] * per_inertia[second])
         velocity = add(less(of_second, of_first), less(faster, cross(turn, normal)), 0.5 * dt)
         slip = -dot(shear, velocity) / tangential
         taken_up = -mu * memory[phys + layout[STIFFNESS]] / memory[phys + layout[SHEAR_STIFFNESS]] * dot(

@@ -130,8 +130,8 @@ class Cut(Scene):
         curved = self.programme.motion.angular_velocity
         turned_in_space = not self.in_plane and len(rock.pairs)
         self._register(
-            ShearRotation(bonds=self.bonds, radii=rock.radii) if turned_in_space else None,
             self.bonds, self.dashpots, tool.contact, self.rock_friction,
+            ShearRotation(bonds=self.bonds, radii=rock.radii) if turned_in_space else None,
             Separation(self.bonds, period=SEPARATION_PERIOD) if self.bond_law.yade_law == "JCFpm" else None,
             PathFollower(bodies=tool.bodies, clock=self.programme.path_time, period=PATH_PERIOD) if curved else None,
             tool.wear_engine, tool.profile, self.heat, self.expansion, self.damping, self.grain_damping,

@@ -134,8 +134,10 @@ class CutOutput(Output):
         if scene.tool.profile:
             found.update(scene.tool.wear.trust(scene.tool))
         if scene.heat:
+            now = scene.heat.log()
             for name in ("tool_temperature_max", "rock_temperature_max"):
-                found[name] = (float(np.nanmax(columns[name])) if name in columns else math.nan, "K")
+                # Heat goes on after the last row.
+                found[name] = (float(np.nanmax([*columns[name], now[name][0]])) if name in columns else math.nan, "K")
         return found
 
     def _cracks(self):

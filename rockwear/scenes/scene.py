@@ -23,6 +23,8 @@ class Scene(ABC):
 
     def __init__(self):
         self.stage, self.clock, self.engines = 0, 0.0, []
+        self.skipped = 0
+        """Steps of no length, which no clock and no period counts."""
 
     @abstractmethod
     def build(self):
@@ -56,11 +58,12 @@ class Scene(ABC):
 
     def _connect(self):
         for engine in self.engines:
-            engine.last_iteration = O.iter - 1
+            engine.start_clock()
             engine.connect()
 
     def skip(self, steps):
-        """So many steps of no length have been made, which no clock counts."""
+        """So many steps of no length have been made."""
+        self.skipped += steps
         self.first_iteration += steps
         for engine in self.engines:
             engine.last_iteration += steps
@@ -89,7 +92,7 @@ class Scene(ABC):
 
     def run_chunk(self):
         """Run to the next canonical point. Raises what an engine raised, RunEnded among it."""
-        base.run(min(self.chunk, self.stages[self.stage][1] - self.step))
+        base.run(min(self.chunk, self.stages[self.stage][1] - self.step), self.skipped)
         self.canonical()
 
     def canonical(self):
@@ -125,6 +128,7 @@ class Scene(ABC):
     def state(self):
         """All of ours that a restart needs, beside YADE's scene."""
         return {"stage": self.stage, "first_iteration": self.first_iteration, "clock": self.clock,
+                "skipped": self.skipped,
                 "engines": {engine.name: engine.state() for engine in self.engines},
                 "last_iteration": {engine.name: engine.last_iteration for engine in self.engines}}
 
@@ -137,7 +141,7 @@ class Scene(ABC):
         O.load(str(directory / "scene.yade.gz"))
         self._make_engines()
         self.stage, self.clock = int(state["stage"]), float(state["clock"])
-        self.first_iteration = int(state["first_iteration"])
+        self.first_iteration, self.skipped = int(state["first_iteration"]), int(state["skipped"])
         self._restore_engines(state)
         self._connect()
         for engine in self.engines:

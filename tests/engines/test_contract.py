@@ -28,7 +28,7 @@ def test_every_engine_is_covered(found):
 
 
 def test_names_and_phases_are_the_known_ones(found):
-    assert set(found["names"]) == NAMES and set(found["phases"]) == {"start", "forces", "motion"}
+    assert set(found["names"]) == NAMES and set(found["phases"]) == {"forces", "between steps"}
 
 
 def test_an_engine_without_a_visit_cannot_be_made(found):

@@ -28,7 +28,7 @@ def test_contacts_are_those_of_python(found):
     assert True in real and False in real and found["contacts"]["normal_force"][0][0][0] != 0
 
 
-@pytest.mark.parametrize("what", ["contact of the tool", "velocities", "motions"])
+@pytest.mark.parametrize("what", ["contact of the tool", "velocities", "velocities before", "motions"])
 def test_contacts_of_the_tool_and_motions_of_bodies_are_those_of_python(found, what):
     for in_memory, in_python in found[what].values():
         assert in_memory == in_python

@@ -6,7 +6,7 @@ from rockwear.report.folder import RunFolder
 from tests.running import ROOT, arguments, history, last_snapshot, run_script, value
 
 SPECIMEN = dict(width=0.05, height=0.025, radius_min=1e-3, radius_max=1.5e-3, bond_law="coulomb", kn=4e9, kt=1.6e9,
-                mu=0.6, bond_tension=4e6, bond_cohesion=20e6, speed=0.2, rock_sampling_period=100, report="false",
+                mu=0.6, bond_tension=4e6, bond_cohesion=20e6, speed=0.2, rock_sampling_period=10, report="false",
                 snapshot_period=1)
 
 

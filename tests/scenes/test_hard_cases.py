@@ -74,7 +74,8 @@ def test_looks_ten_steps_apart_miss_friction_alone(checks):
 
 def test_at_its_brittle_limit_a_softening_rock_is_torn_as_a_brittle_one(checks):
     brittle, limit = checks["brittle limit"]["coulomb"], checks["brittle limit"]["cohesive"]
-    assert limit["first"] == brittle["first"]
+    # YADE's brittle law is visited within the step, at its beginning in time; the other one after it.
+    assert limit["first"] == pytest.approx(brittle["first"] + checks["time step"], rel=1e-9)
     assert limit["broken"] == pytest.approx(brittle["broken"], rel=0.12)
 
 

@@ -115,8 +115,10 @@ def test_energy_of_a_free_pair_that_flies_apart(checks):
     for found in checks["flying"].values():
         assert found["broken"] == 1
         assert found["residual"] < 1e-3
-    assert checks["flying, looked at every ten steps"]["residual"] < 1e-3
-    assert checks["flying, damaged by slip"]["residual"] < 5e-3
+    # Whichever step of the motion a look comes at.
+    for name in ("flying, looked at every ten steps", "flying, damaged by slip"):
+        assert all(found["broken"] == 1 and found["residual"] < 5e-3 for found in checks[name])
+        assert min(found["residual"] for found in checks[name]) < 1e-3
 
 
 def test_the_work_of_slip_of_a_bond_that_is_wide_open(checks):

@@ -100,6 +100,7 @@ def sample(scene):
 def cut(scene, values):
     """[samples], and seconds of processor time per step up to the sample at TIMED or the last one before."""
     alone = values["engines"] == "dead"
+    base.register([] if alone else scene.engines)
     for engine in O.engines:
         engine.dead = alone and isinstance(engine, PyRunner)
     begin = time.process_time()

@@ -65,8 +65,8 @@ from rockwear.scenes import granular, yade_scene
 from rockwear.scenes.scene import Scene
 from rockwear.scenes.tool_bodies import FacetBodies, ToolBodies
 
-SAVED, AFTER = 134, 101
-"""Steps to the checkpoint and from there; no period of an engine divides the first."""
+SAVED, AFTER = 132, 101
+"""Steps to the checkpoint and from there; it comes at no multiple of the period of an engine that adds up."""
 TRANSIENT = {"wall_time", "visits", "places", "body_list", "where", "counted"}
 """Attributes of engines that a restart resets or counts anew, or finds elsewhere in memory."""
 RADIUS, KN, KT, RN, MU = 1e-3, 2e10, 1e10, 1e5, 0.5
@@ -110,7 +110,7 @@ class World(Scene):
     tool_law, loose, options = None, FrictViscoMat, {}
 
     def __init__(self):
-        self.stage, self.clock = 0, 0.0
+        self.stage, self.clock, self.skipped = 0, 0.0, 0
 
     def build(self):
         O.reset()
@@ -565,12 +565,14 @@ def yade_now():
     return {"iteration": O.iter, "ids": np.array(bodies), "bodies": np.array(Subdomain().getStateValuesFromIds(bodies))}
 
 
-def visits_due(period, start):
-    """Visits in SAVED steps from iteration `start`.
+def visits_due(engine, start):
+    """Visits in SAVED steps from iteration `start`: between steps whenever YADE has counted a multiple of the period.
 
     A PyRunner comes in its first step if `start` is at least its period.
     """
-    return (start >= period) + (SAVED - 1) // period
+    if engine.phase == base.BETWEEN:
+        return (start + SAVED) // engine.period - start // engine.period
+    return (start >= engine.period) + (SAVED - 1) // engine.period
 
 
 def open_history(world, folder):
@@ -598,7 +600,7 @@ def check(kind, folder):
                            for path, value in flat(states[engine.name]).items() if not plain(value)]
         wrong["log"] += [f"{engine.name}: {name}" for name, (value, unit) in engine.log().items()
                          if not (isinstance(value, numbers.Number) and isinstance(unit, str))]
-        due = visits_due(engine.period, world.first_iteration) if engine.period else 0
+        due = visits_due(engine, world.first_iteration) if engine.period else 0
         if engine.visits != due or (due and not engine.wall_time > 0):
             wrong["visits"].append(f"{engine.name}: {engine.visits} of {due}")
     checkpoint.save(folder, identity={}, state=world.state(),

@@ -267,6 +267,7 @@ def two_spinning(period, duration=0.02):
                 surface_period=1.0, conduction=False, period=steps)
     expansion = Expansion(coefficient=alpha, rock=rock, reference=300.0, temperature=lambda: network.temperature,
                           bonds=bonds, loose=lambda: friction.contacts, period=steps)
+    base.register([])
     base.run(10)
     insert(bonds, friction, heat, expansion)
     base.run(round(duration / O.dt))

@@ -314,6 +314,7 @@ checks = {
                "crushed in finer steps": torn(law, CRUSH, RATE, 100, finer=8)} for name, law in SOFT.items()},
     "looks ten steps apart": {name: torn(SOFT["cohesive"], gradient, RATE, 300, finer=8, looks=10)
                               for name, gradient in (("sheared", SHEAR), ("crushed", CRUSH), ("torn", TEAR))},
+    "time step": TIME_STEP,
     "brittle limit": {law.name: torn(law, TEAR, 0.1, 400)
                       for law in (LAWS["coulomb"], Cohesive(bond_fracture_energy=1e-6, **AREA))},
     "cycled": {name: cycled(law) for name, law in LAWS.items()},

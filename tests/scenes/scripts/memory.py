@@ -148,13 +148,42 @@ def velocities_at_contacts():
         body.state.vel, body.state.angVel = velocity, spin.tolist()
     real = [i for i in O.interactions if i.isReal]
     where = memory.MEMORY, memory.WORDS, memory.kernel_layout(), memory.list_of_bodies()
-    both = [np.array(compiled.velocities(*where, memory.place(i))) for i in real]
+    nobody = *memory.lists_of_forces(), *np.zeros((3, 0)), np.zeros(3)
+    both = [np.array(compiled.velocities(*where, nobody, 0.0, memory.place(i))) for i in real]
     python = [list(i.geom.incidentVel(i, False)) for i in real]
     O.bodies.erase(8)
     scale = np.abs(python).max(axis=1, keepdims=True)
     return {"relative": (np.round([second - first for first, second in both] / scale, 12).tolist(),
                          np.round(python / scale, 12).tolist()),
             "there": ([bool(compiled.is_there(where[1], where[3], k)) for k in range(9)], [k != 8 for k in range(9)])}
+
+
+def velocities_before_the_step():
+    """{what: from memory after a step, from Python before it} of contacts of spheres that forces and torques moved on,
+    one of them blocked in part: velocities of both bodies at the point of contact of the step."""
+    contacts_of_yade()
+    masses, inertias, gravity = np.arange(1.0, 10.0), np.arange(2.0, 11.0), np.array([0.3, -9.81, 0.2])
+    motion = np.random.default_rng(2).normal(size=(9, 2, 3)).tolist()
+    for body, (velocity, spin), mass, inertia in zip(O.bodies, motion, masses.tolist(), inertias.tolist()):
+        body.state.vel, body.state.angVel = velocity, spin
+        body.state.mass, body.state.inertia = mass, (inertia,) * 3
+        O.forces.setPermF(body.id, (3.0 * body.id, -2.0, 1.0))
+        O.forces.setPermT(body.id, (0.5, -body.id, 2.0))
+    O.bodies[3].state.blockedDOFs = "xzY"
+    # Of a body beyond those of `motion`, here the last one, nothing is known but that it moves evenly.
+    O.bodies[8].state.blockedDOFs = "xyzXYZ"
+    O.engines[-1].gravity, O.engines[-1].damping, O.dt = gravity.tolist(), 0.0, 1e-4
+    before = [[np.array(part) for part in (body.state.pos, body.state.vel, body.state.angVel)] for body in O.bodies]
+    lists = memory.lists_of_forces()
+    O.step()
+    tables = *lists, 1.0 / masses[:8], 1.0 / inertias[:8], np.ones(8), gravity
+    where = memory.MEMORY, memory.WORDS, memory.kernel_layout(), memory.list_of_bodies()
+    real = [i for i in O.interactions if i.isReal]
+    found = [np.array(compiled.velocities(*where, tables, O.dt, memory.place(i))) for i in real]
+    python = [np.array([velocity + np.cross(spin, np.array(i.geom.contactPoint) - place)
+                        for place, velocity, spin in (before[i.id1], before[i.id2])]) for i in real]
+    return {"before": (np.round(found, 9).tolist(), np.round(python, 9).tolist()),
+            "of blocked ones": (sum(bool({i.id1, i.id2} & {3, 8}) for i in real), 2)}
 
 
 def motions():
@@ -222,7 +251,7 @@ def left_as_it_was():
 checks = {
     "wrong": read_and_written(), "wrong together": together(), "behind": behind(), "left": left_as_it_was(),
     "contacts": contacts_of_yade(), "contact of the tool": contact_of_the_tool(),
-    "velocities": velocities_at_contacts(), "motions": motions(),
+    "velocities": velocities_at_contacts(), "velocities before": velocities_before_the_step(), "motions": motions(),
     "as it is": refused(INSTANCE=memory.INSTANCE),
     "other layouts": [refused(INSTANCE=i, HOLDER=h) for i in (24, 32, 40, 48) for h in (0, 8, 16, 24)
                       if (i, h) != (40, 16)],

@@ -1,6 +1,4 @@
 """Engines in YADE's loop without a scene."""
-from yade import O
-
 from rockwear.engines import base
 
 
@@ -9,5 +7,5 @@ def insert(*engines):
     base.register(engines)
     base.insert(engines)
     for engine in engines:
-        engine.last_iteration = O.iter - 1
+        engine.start_clock()
         engine.connect()
