@@ -200,8 +200,8 @@ class ParticleCut(World):
                          convection=1e4, emissivity=0.9, ambient=280.0,
                          rock_paths=(rock.pairs, np.full(len(rock.pairs), 3.0)),
                          tool_paths=(tool.pairs, np.full(len(tool.pairs), 50.0)), surface_period=2e-6,
-                         wear_acceleration=10.0, shank_temperature=320.0, period=8)
-        expansion = Expansion(coefficient=1e-5, rock=rock, reference=290.0, bonds=self.bonds, period=8,
+                         wear_acceleration=10.0, shank_temperature=320.0, period=32)
+        expansion = Expansion(coefficient=1e-5, rock=rock, reference=290.0, bonds=self.bonds, period=32,
                               temperature=lambda: network.temperature[:rock.count],
                               loose=lambda: [*self.rock_friction.contacts,
                                              *(contact.interaction for contact in self.contact.possible)])
