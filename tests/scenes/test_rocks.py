@@ -30,14 +30,14 @@ def test_a_rock_of_the_library_is_cut_in_space(tmp_path):
     values = {**{name: BLOCK[name] / 20 for name in lengths}, "rock": "crushing_sandstone", "radius": 6e-4,
               "scale_factor": 1, "facet": 1e-3, "tip_radius": 2e-4, "tool_kn": 1.5e7, "tool_kt": 6e6, "velocity": 8.0,
               "lowering_velocity": 8.0, "cut_time": 3e-4, "approach": 2e-4, "gravity": 0, "snapshot_period": 1,
-              "report": "false"}
+              "report": "false", "seed": 3}
     run = run_script(ROOT / "yade_scripts/cutting_3d_triangles.py", *arguments(values), "--out", str(tmp_path),
                      out=tmp_path)
     assert run.code == 0, run.stderr
     energy, results = run.summary["balances"]["energy"], run.summary["results"]
     assert run.summary["parameters"]["bond_crushing"] == 480e6
-    # Samples of slip in so short a cut: four packings miss -1.2, +0.9, -0.3 and -0.4 %.
-    assert energy["tool_work"] > 0.05 and abs(energy["residual"]) < 0.02 * energy["tool_work"], energy
+    # Slip is sampled, in so short a cut: packings 1 to 4 miss -1.2, +0.9, -0.3 and -0.4 %.
+    assert energy["tool_work"] > 0.05 and abs(energy["residual"]) < 0.01 * energy["tool_work"], energy
     assert results["shear_cracks"]["value"] > 20 and energy["rock_crushing"] > 0
 
 
