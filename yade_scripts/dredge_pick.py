@@ -26,4 +26,4 @@ runpy.run_path(sys.argv[0].rpartition("dredge_pick.py")[0] + "find_rockwear.py")
 from rockwear.run.main import main
 from rockwear.scenes import dredging
 
-main("dredge_pick", dredging.groups(full="--full" in sys.argv), dredging.make)
+main("dredge_pick", dredging.groups(), dredging.make)

@@ -18,8 +18,8 @@ from rockwear.scenes.parameters import BONDS
 from rockwear.scenes.two_disc import drive_pair, programme
 
 GROUPS = [
-    BONDS.without("rock", "bond_law", "bonding_gap", "weibull_modulus", "grain_edge", "grain_strength",
-                  "grain_kn", "grain_kt").with_defaults(
+    BONDS.without("rock", "bond_law", "bonding_gap", "weibull_modulus", "rotation", "grain_edge",
+                  "grain_strength", "grain_kn", "grain_kt").with_defaults(
         kn=2e10, kt=2e10, Rn=1e5, Rt=1e5, H=1e10, bond_tension=1e5, bond_cohesion=1e5, bond_fracture_energy=0.75,
         mu=0.839),
     Group("test", (

@@ -54,11 +54,12 @@ duration = plausible(1e-12, 1e8)
 """A rule: s, up to three years."""
 
 
-def integer(low):
-    """A rule: a whole number of at least `low`."""
+def integer(low, high=None):
+    """A rule: a whole number in [low, high]."""
     def rule(name, value, unit):
         found = finite(name, value, unit)
         require(found == int(found) and found >= low, name, value, f"a whole number of at least {low}", unit)
+        require(high is None or found <= high, name, value, f"a whole number of at most {high}", unit)
         return int(found)
     return rule
 
@@ -126,13 +127,34 @@ class Presets(ABC):
         """
 
 
+class Fixed(Presets):
+    """The same values {name: value} wherever a flag is set."""
+
+    def __init__(self, **values):
+        super().__init__()
+        self.values = values
+
+    def defaults(self, value, values):
+        return self.values
+
+
+@dataclass(frozen=True)
+class Above:
+    """The numbers above `low`, as a condition of Parameter.when."""
+
+    low: float
+
+    def __contains__(self, value):
+        return value > self.low
+
+
 @dataclass(frozen=True)
 class Parameter:
     """One value that a user may give.
 
     name, default, unit (SI; "" without one), rule, meaning, source: where the default comes from
-    when: {name of another parameter: (values,)}: used only where every other has one of these values. A condition on a
-    parameter that a scene does not declare is met.
+    when: {name of another parameter: (values,) or Above}: used only where every other has one of these values. A
+    condition on a parameter that a scene does not declare is met.
     size_power: powers of the size of the rock's particles with which the value grows, in the plane and in space, so
     that the rock stays the same: lengths grow with it, stresses stay
     presets: of a parameter whose value gives others their defaults: see Presets

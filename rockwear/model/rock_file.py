@@ -257,18 +257,23 @@ class RockPresets(Presets):
     """The values that the file of a rock gives a scene.
 
     declared: {name: Parameter} of what its parameters may be; only: names of those that the scene has a use for, None
-    for all. Values hold at the resolution of the file and are converted to the radii of the scene by
+    for all; scaled: names of those that the scene multiplies by scale_factor^size_power, None for all.
+
+    Values hold at the resolution of the file and are converted to the radii of the scene by
     Parameter.size_power and a power that the file may have, NAME_power, with the mean of the smallest and largest
     radius for the size. Elasticity and the strengths of bonds then stay, and with such powers those of the rock.
     Toughness stays with the laws whose strengths are in Pa alone: a bond of the damage law takes Rn^2/2 (1/kn + 1/H)
     over its part of the crack to break, which grows with the radius as long as H does not.
+
+    A scene with a scale_factor has radii scale_factor times as large as its parameters say. Values are then such that
+    with the scene's own factors they are right there.
     """
 
     metavar = "NAME|FILE"
 
-    def __init__(self, declared, *, only=None):
+    def __init__(self, declared, *, only=None, scaled=None):
         super().__init__()
-        self.declared, self.only = declared, only
+        self.declared, self.only, self.scaled = declared, only, scaled
 
     def path(self, value):
         """Path of the rock."""
@@ -283,14 +288,19 @@ class RockPresets(Presets):
         return rock, kind
 
     def defaults(self, value, values):
-        """{name: value} at the radii of the scene."""
+        """{name: value} that are right at the radii of the scene."""
         rock, kind = self.read(value, values)
         part = rock.parts[kind]
         found = {name: part.parameters[name] for name in part.parameters if self.only is None or name in self.only}
         for name in found:
             require(name in values, "rock", f"{value}, {kind}.parameters.{name} = {found[name]}",
                     "a known parameter (--help lists them)")
+        factor = values.get("scale_factor", 1.0)
         ratio = size({name: values[name] for name in RADII[kind]}) / size(part.resolution)
-        powers = {name: self.declared[name].size_power[DIMENSION[kind]] + found.get(f"{name}_power", 0.0)
-                  for name in found}
-        return {name: ratio**powers[name] * found[name] if powers[name] else found[name] for name in found}
+        for name in found:
+            own = self.declared[name].size_power[DIMENSION[kind]]
+            power = own + part.parameters.get(f"{name}_power", 0.0)
+            taken = own if self.scaled is None or name in self.scaled else 0
+            if power or taken:
+                found[name] *= ratio**power * factor**(power - taken)
+        return found

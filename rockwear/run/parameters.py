@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from rockwear.kernels.checks import ParameterError, require
-from rockwear.kernels.parameter import RENAMED_IN, Group, file, flag, text, unmet, words
+from rockwear.kernels.parameter import RENAMED_IN, Above, Group, file, flag, text, unmet, words
 
 RENAMED = {
     "acceleration": ("wear_acceleration",), "speed_up": ("time_scale",),
@@ -80,6 +80,10 @@ def _word(value):
     return str(value).lower() if isinstance(value, bool) else str(value) or "none"
 
 
+def _condition(values):
+    return f"above {values.low:g}" if isinstance(values, Above) else f"= {' or '.join(map(_word, values))}"
+
+
 def _formatter(prog):
     return argparse.HelpFormatter(prog, max_help_position=26, width=118)
 
@@ -113,7 +117,7 @@ def _metavar(parameter):
 def _description(parameter, declared):
     """Meaning, default with its unit, source, and the condition of use among the declared parameters."""
     default = f"{_word(parameter.default)} {parameter.unit}".strip()
-    used = "; ".join(f"{name} = {' or '.join(map(_word, values))}" for name, values in (parameter.when or {}).items()
+    used = "; ".join(f"{name} {_condition(values)}" for name, values in (parameter.when or {}).items()
                      if name in declared)
     return f"{parameter.meaning} (default {default}; {parameter.source}{f'; only with {used}' if used else ''})"
 

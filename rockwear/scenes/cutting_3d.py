@@ -38,7 +38,7 @@ SETTLING = (
     Parameter("freeboard", 0.06, "m", number(0), "how far the box's sides stand above the fill"))
 LOOSE_GROUPS = [
     {"bonds": parameters.LOOSE, "motion": Group("motion", (*group.parameters, *SETTLING))}.get(group.title, group)
-    for group in GROUPS if group.title != "heat"]
+    for group in parameters.given(GROUPS, heat=False)]
 SCALED = {**{p.name: p.size_power[1] for group in (parameters.BONDS, parameters.CONTACT) for p in group.parameters},
           "radius": 1, "tool_radius": 1, "thermal_radius": 1}
 """Powers of the scale factor with which parameters grow: lengths with it, while stresses stay."""
@@ -89,10 +89,9 @@ def make_loose(values):
 def scaled(values):
     """The parameters with the scale factor applied."""
     v = SimpleNamespace(**values)
-    c = v.scale_factor = 1.0 if v.full else v.scale_factor
     for name, power in SCALED.items():
         if power and name in values:
-            setattr(v, name, c**power * values[name])
+            setattr(v, name, v.scale_factor**power * values[name])
     return v
 
 
@@ -132,8 +131,7 @@ def tool(v):
                              thermal_body=None, **common)
     require(v.breadth < v.depth, "breadth", v.breadth, f"less than the block's depth {v.depth:g}", "m")
     outline = parts.outline(v)
-    height = float(np.ptp(outline[:, 1]))
-    require(height > v.depth_of_cut, "tooth_height", height, f"more than depth_of_cut = {v.depth_of_cut:g}", "m")
+    parts.check_height(v, outline, "depth_of_cut", v.depth_of_cut)
     if v.tool == "triangles":
         check_facet(v, 2 * area(outline) + perimeter(outline) * v.breadth)
         corners, facets = prism(outline, v.breadth, v.facet)

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 
 from rockwear.kernels.checks import require
-from rockwear.kernels.parameter import Group, Parameter, above_zero, duration, flag, integer, number
+from rockwear.kernels.parameter import Fixed, Group, Parameter, above_zero, duration, flag, integer, number
 from rockwear.kernels.polygon import nearest_on_edges
 from rockwear.kernels.rigid_motion import SwingAndRotation
 from rockwear.kernels.strip import ArcStrip
@@ -18,14 +18,15 @@ from rockwear.scenes.physics import Boundary
 from rockwear.scenes.rock_window import RockWindow
 from rockwear.scenes.turns import Turns
 
-SCALED = "radius_min", "radius_max", "Rn", "Rt"
+STRENGTHS = "Rn", "Rt"
+SCALED = "radius_min", "radius_max", *STRENGTHS
 """Parameters that grow with scale_factor: the macroscopic strength stays."""
 WITHOUT = {"width", "height", "grading_factor", "fine_depth", "velocity", "depth_of_cut", "start_up", "cycle_time",
            "cycles"}
 """Parameters of a straight cut through a box."""
 ROCK = (
     Parameter("full", False, "", flag, "the defaults of scale_factor, backing and window that give the source's 92,000 "
-              "discs"),
+              "discs", presets=Fixed(scale_factor=1.0, backing=0.436, window=False)),
     Parameter("backing", 0.06, "m", above_zero, "rock behind the path of the pick, fixed at its far side"),
     Parameter("window", True, "", flag, "rock only near the tip, in a window that moves along with the pick; false: "
               "all rock along the path is there from the start"),
@@ -46,21 +47,21 @@ MOTION = (
     Parameter("entry_angle", 25.0, "deg", number(1, 150), "from the lowest point of the path, where the pick enters",
               "ours: [Rojek 2014] has a figure only"),
     Parameter("cut_time", 0.65, "s", duration, "of cutting in a turn", "[Rojek 2014, 5.3]"),
-    Parameter("cycles", 3, "", integer(1), "turns, each a cut into fresh rock and cooling in water",
-              "[Rojek 2014, 5.3]"),
+    Parameter("cycles", 3, "", integer(1, parameters.MOST_CYCLES),
+              "turns, each a cut into fresh rock and cooling in water", "[Rojek 2014, 5.3]"),
     Parameter("cooling_period", 0.01, "s", above_zero, "between steps while the pick cools"))
 OUTPUT = Group("output", (Parameter("snapshot_period", 0.05, "s", above_zero, "between the pictures of the report"),))
 
 
-def groups(full=False):
-    """The scene's parameter groups; full: with the source's discs, some 92,000, as defaults."""
+def groups():
+    """The scene's parameter groups."""
     found = []
-    for group in (parameters.SPECIMEN, parameters.BONDS, parameters.PLANE_TOOL, parameters.CONTACT, parameters.CYCLES,
+    bonds = Group("bonds", (parameters.rock_parameter(scaled=STRENGTHS), *parameters.BOND_PARAMETERS))
+    for group in (parameters.SPECIMEN, bonds, parameters.PLANE_TOOL, parameters.CONTACT, parameters.CYCLES,
                   parameters.WEAR, parameters.HEAT, parameters.ACCURACY, parameters.DENSITY_MAP):
         own = {"rock": ROCK, "motion": MOTION}.get(group.title, ())
         kept = tuple(p for p in group.parameters if p.name not in WITHOUT)
         found.append(Group(group.title, (*own, *kept), group.when))
-    size = dict(scale_factor=1.0, backing=0.436, window=False) if full else {}
     return parameters.with_defaults(
         [*found, OUTPUT], kt=4e9, Rn=0.1e6, Rt=0.1e6, mu=0.8, tooth_height=0.15, tooth_width=0.15, rake=10.0,
         clearance=20.0,
@@ -72,7 +73,7 @@ def groups(full=False):
         # Of the friction in the rock, 44 % of the work of 19 ms in a cut, 2, 4 and 8 steps between samples miss or add
         # 0.7, 2.6 and 7.1 %, at 0.60, 0.49 and 0.36 of the time that samples of every step take (steps of half the
         # critical one).
-        rock_sampling_period=2, heat_period=1e-3, surface_period=0.01, record_period=2e-3, **size)
+        rock_sampling_period=2, heat_period=1e-3, surface_period=0.01, record_period=2e-3)
 
 
 def make(values):
@@ -140,8 +141,7 @@ class Track:
 
     def __init__(self, v, vertices):
         tip = self.tip = vertices[np.argmin(vertices[:, 1])]
-        height = float(np.ptp(vertices[:, 1]))
-        require(height > v.feed, "tooth_height", height, f"more than feed = {v.feed:g}", "m")
+        parts.check_height(v, vertices, "feed", v.feed)
         edge = np.linspace(vertices, np.roll(vertices, -1, axis=0), 50).reshape(-1, 2)
         front = edge[edge[:, 1] < tip[1] + v.feed, 0].max() - tip[0]
         self.pivot = tip + (0.0, v.cutter_radius)

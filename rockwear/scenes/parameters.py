@@ -1,18 +1,22 @@
 """Parameter groups that scenes take as a whole; each scene has defaults of its own."""
+from dataclasses import replace
+
 from rockwear.kernels.bond_laws import BOND_LAWS
 from rockwear.kernels.conduction import PATHS
 from rockwear.kernels.density import LEAST_RATIO, MOST_RATIO
 from rockwear.kernels.erosion import REMOVAL
 from rockwear.kernels.parameter import (
-    Group, Parameter, above_zero, choice, density, duration, file, flag, integer, law_parameters, number, speed,
-    stiffness, text, zero_or)
+    Above, Fixed, Group, Parameter, above_zero, choice, density, duration, file, flag, integer, law_parameters, number,
+    speed, stiffness, text, zero_or)
 from rockwear.kernels.wear_laws import WEAR_LAWS
 from rockwear.model.materials import SANDSTONE, STEEL
 from rockwear.model.rock_file import RockPresets
 
+MOST_CYCLES = 10**5
 HARDNESS_TABLES = "MET71", "MET91"
 BY_TABLE = {"hardness": (0.0,)}
 OF_PARTICLES, OF_FACETS = {"tool": ("particles",)}, {"tool": ("segments", "triangles")}
+OF_GRAINS = {"grain_edge": Above(0)}
 PARAMETRIC = {"outline": ("",), "stl": ("",)}
 
 # ---- rock
@@ -38,7 +42,8 @@ BLOCK = Group("rock", (
     Parameter("scale_factor", 1.5, "", number(1, 8),
               "factor on the radii of rock and tool; stiffnesses grow with it and "
               "strengths with its square, so that the rock keeps modulus and strength"),
-    Parameter("full", False, "", flag, "the source's sizes: scale_factor counts as 1"),
+    Parameter("full", False, "", flag, "the source's sizes: scale_factor is 1 by default",
+              presets=Fixed(scale_factor=1.0)),
     Parameter("rock_density", SANDSTONE.density, "kg/m3", density, "bulk density of the rock", "[Rojek 2003, 7.4]"),
     Parameter("gravity", 9.81, "m/s2", number(0), "downwards", "[Rojek 2003, 13.1]")))
 
@@ -54,10 +59,11 @@ BOND_PARAMETERS = (
     Parameter("grain_edge", 0.0, "m", number(0), "mean edge of grains, Voronoi cells of particles; 0: no grains",
               "[Bahaaddini 2018, sec. 2]", size_power=(1, 1)),
     Parameter("grain_strength", 0.0, "", zero_or(1, 1e3), "strengths of bonds within a grain over those between "
-              "grains; 0: grains do not break", "0: [Bahaaddini 2018, sec. 2]"),
-    Parameter("grain_kn", 0.0, "N/m", number(0), "normal stiffness of bonds within a grain; 0: kn", size_power=(0, 1)),
-    Parameter("grain_kt", 0.0, "N/m", number(0), "tangential stiffness of bonds within a grain; 0: kt",
-              size_power=(0, 1)))
+              "grains; 0: grains do not break", "0: [Bahaaddini 2018, sec. 2]", OF_GRAINS),
+    Parameter("grain_kn", 0.0, "N/m", number(0), "normal stiffness of bonds within a grain; 0: kn", "ours", OF_GRAINS,
+              size_power=(0, 1)),
+    Parameter("grain_kt", 0.0, "N/m", number(0), "tangential stiffness of bonds within a grain; 0: kt", "ours",
+              OF_GRAINS, size_power=(0, 1)))
 OF_ROCK = {p.name: p for p in (*BOND_PARAMETERS, *SPECIMEN.only("porosity", "rock_density"))}
 """What the file of a rock may give."""
 
@@ -147,7 +153,8 @@ CUT_MOTION = (
     Parameter("velocity", 4.0, "m/s", speed, "cutting velocity", "[Rojek 2003, 9.2]"),
     Parameter("time_scale", 1.0, "", above_zero,
               "mechanical over physical rate: the mechanics run so many times as fast as the "
-              "process; heat flows, and all times count, in the process's own seconds", "[Rojek 2003, 12.1], there 5"),
+              "process; heat flows, and all times count, in the process's own seconds, damping alone in those of the "
+              "mechanics", "[Rojek 2003, 12.1], there 5"),
     Parameter("depth_of_cut", 0.008, "m", above_zero, "depth of cut"),
     Parameter("approach", 0.5e-3, "m", number(0), "free way before the tool meets the rock"))
 DAMPING = Parameter("background_damping", 500.0, "1/s", number(0), "global viscous damping, rate of decay",
@@ -159,11 +166,12 @@ OTHER_DAMPING = (
               "fraction of the critical ones; in the plane", "[Rojek 2014, eqs 18-22]"),
     Parameter("grain_quality", 30.0, "", number(0), "quality factor of vibrations within grains, in the plane, if "
               "damping_period is short against their decay; 0: they do not decay",
-              "ours; sandstones have some 20 to 100, recalled"))
+              "ours; sandstones have some 20 to 100, recalled", OF_GRAINS))
 CYCLES = Group("motion", (
     *CUT_MOTION,
     Parameter("start_up", 0.005, "s", duration, "time of the start-up cut", "[Rojek 2003, 9.1]"),
-    Parameter("cycles", 3, "", integer(0), "cycles after the start-up, each on the rock that the start-up left"),
+    Parameter("cycles", 3, "", integer(0, MOST_CYCLES),
+              "cycles after the start-up, each on the rock that the start-up left"),
     Parameter("cycle_time", 0.007, "s", duration, "time of a cycle, beside what a worn tool needs to reach the rock"),
     DAMPING, *OTHER_DAMPING))
 LOWERING = Group("motion", (
@@ -242,7 +250,8 @@ HEAT = Group("heat", (
 # ---- accuracy
 
 TIME_STEP = (
-    Parameter("time_step_fraction", 0.8, "", number(1e-4, 1), "time step over the critical one", "make bench"),
+    Parameter("time_step_fraction", 0.8, "", number(1e-4, 1), "time step over the critical one", "make bench",
+              {"time_step": (0.0,)}),
     Parameter("time_step", 0.0, "s", number(0), "time step itself; 0: by time_step_fraction"))
 ACCURACY = Group("accuracy", (
     *TIME_STEP,
@@ -264,6 +273,15 @@ DENSITY_MAP = Group("output", (
               "of the density map: radius of the control volume around a particle, over the particle's own, 3 say; 0: "
               "no density map", "[Rojek 2003, eq. 7.9]"),))
 """What a snapshot shows of rock when asked to."""
+
+
+def given(groups, **values):
+    """The groups without what a scene gives itself, {name: value}, and without what is not used with these values."""
+    def used(one):
+        return all(values[name] in allowed for name, allowed in (one.when or {}).items() if name in values)
+    return [replace(group, when=None if set(group.when or ()) <= set(values) else group.when,
+                    parameters=tuple(p for p in group.parameters if p.name not in values and used(p)))
+            for group in groups if used(group)]
 
 
 def with_defaults(groups, **defaults):

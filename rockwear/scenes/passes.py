@@ -1,5 +1,6 @@
 """Temperatures of a tooth at several speeds: transient, quasi-stationary, and wear started from either [Rojek 2003,
 ch. 11]."""
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -7,7 +8,7 @@ import numpy as np
 from rockwear.kernels.archard import Hardness
 from rockwear.kernels.checks import require
 from rockwear.kernels.free_surface import free_surface
-from rockwear.kernels.parameter import Group, Parameter, above_zero, integer, listed, numbers
+from rockwear.kernels.parameter import Parameter, above_zero, integer, listed, numbers
 from rockwear.kernels.tool_load import tool_under_load
 from rockwear.scenes import cutting, parameters, parts
 from rockwear.scenes.cut import Cut
@@ -18,25 +19,22 @@ UNWORN = Hardness.constant(1e30)
 """A tool too hard to wear: the passes without wear."""
 GIVEN = {"cycles": 1, "shank": "insulated", "heat": True, "time_scale": 1.0, "tool": "particles"}
 """Parameters of the cut that are the programme's here."""
+SHANK_TEMPERATURE = replace(*parameters.HEAT.only("shank_temperature").parameters, when=None)
 PASSES = (
     Parameter("velocities", "4,0.4,0.04", "m/s", numbers(above_zero), "of the process, a pass each",
               "[Rojek 2003, 11.2]"),
     Parameter("wear_velocity", 0.4, "m/s", above_zero, "of the process in the passes with wear", "[Rojek 2003, 11.4]"),
-    Parameter("wear_passes", 1, "", integer(0), "passes with wear from each of the two quasi-stationary fields"),
+    Parameter("wear_passes", 1, "", integer(0, parameters.MOST_CYCLES),
+              "passes with wear from each of the two quasi-stationary fields"),
     Parameter("long_time", 60.0, "s", above_zero, "of heating under the mean load, after each pass"))
 
 
 def groups(**defaults):
     """The scene's parameter groups with other defaults."""
-    found = []
-    for group in parameters.with_defaults(cutting.GROUPS, **defaults):
-        own = PASSES if group.title == "motion" else ()
-        kept = tuple(p for p in group.parameters if p.name not in GIVEN and (p.name != "shank_temperature"))
-        if group.title == "heat":
-            kept += tuple(Parameter(p.name, p.default, p.unit, p.rule, p.meaning, p.source) for p in group.parameters
-                          if p.name == "shank_temperature")
-        found.append(Group(group.title, (*kept, *own)))
-    return found
+    own = {"motion": PASSES, "heat": (SHANK_TEMPERATURE,)}
+    return parameters.with_defaults(
+        [replace(group, parameters=(*group.parameters, *own.get(group.title, ())))
+         for group in parameters.given(cutting.GROUPS, **GIVEN)], **defaults)
 
 
 def make(values):
@@ -45,8 +43,13 @@ def make(values):
     parts.check_radii(v)
     cutting.check_cut(v, v.start_up + v.cycle_time)
     velocities = listed(v.velocities)
+    require(len(set(velocities)) == len(velocities), "velocities", v.velocities, "each given once", "m/s")
     require(v.wear_passes == 0 or v.wear_velocity in velocities, "wear_velocity", v.wear_velocity,
             f"one of velocities = {v.velocities}", "m/s")
+    require(v.conduction, "conduction", "false", "true: without it no temperature is quasi-stationary")
+    require(max(v.convection, v.emissivity, v.contact_conductance) > 0, "convection", v.convection,
+            "greater than 0 where emissivity and contact_conductance are 0: an insulated tool has to lose its heat",
+            "W/m2K")
     programme = Passes(velocities=velocities, wear_velocity=v.wear_velocity, wear_passes=v.wear_passes,
                        start_up=v.start_up,
                        pass_time=v.cycle_time, long_time=v.long_time, shank_temperature=v.shank_temperature,

@@ -5,9 +5,10 @@ import json
 import pytest
 
 from rockwear.kernels.checks import ParameterError
+from rockwear.kernels.parameter import Parameter, above_zero
 from rockwear.model import rock_file
 from rockwear.run import parameters
-from rockwear.scenes.parameters import BLOCK, BONDS, LOOSE, OF_ROCK, SPECIMEN
+from rockwear.scenes.parameters import BLOCK, BOND_PARAMETERS, BONDS, LOOSE, OF_ROCK, SPECIMEN, rock_parameter
 
 PLANE, SPACE = [SPECIMEN, BONDS], [BLOCK, BONDS]
 BRITTLE = {"bond_law": "brittle", "kn": 18e9, "kt": 8e9, "Rn": 4e4, "Rt": 4e5, "mu": 0.8, "bonding_gap": 1e-4,
@@ -86,13 +87,38 @@ def test_strengths_follow_the_powers_of_the_file(tmp_path):
     assert given["bond_cohesion"] == 4e7
 
 
+COHESIVE = {"bond_law": "cohesive", "kn": 18e9, "kt": 8e9, "mu": 0.8, "bond_tension": 7e6, "bond_cohesion": 2e7,
+            "bond_fracture_energy": 30.0, "bond_tension_power": -1.0, "bonding_gap": 1e-4, "porosity": 0.1,
+            "grain_edge": 2e-3}
+
+
+def test_values_are_right_at_the_radii_that_a_scale_factor_makes(tmp_path):
+    data = copy.deepcopy(ROCK)
+    data["plane"]["parameters"] = COHESIVE
+    # The scene multiplies radii and Rn, Rt alone, as that of a dredge pick.
+    scaled = [SPECIMEN, rock_parameter(scaled=("Rn", "Rt")), *BOND_PARAMETERS,
+              Parameter("scale_factor", 1.0, "", above_zero, "on the radii")]
+    found = read(scaled, "--rock", written(tmp_path, data), "--scale_factor", 2)
+    expected = {"radius_min": 1e-3, "bond_tension": 3.5e6, "bond_cohesion": 2e7, "bonding_gap": 2e-4,
+                "grain_edge": 4e-3}
+    assert {name: found[name] for name in expected} == pytest.approx(expected)
+    found = read(scaled, "--rock", written(tmp_path), "--scale_factor", 2)
+    assert [found[name] for name in BRITTLE] == pytest.approx([*list(BRITTLE.values())[:-2], 2e-4, 0.1])
+    # A cut in space all that grows.
+    data["space"]["parameters"] = {**COHESIVE, "kn": 1e8, "kt": 5e7, "bonding_gap": 5e-4}
+    found = read(SPACE, "--rock", written(tmp_path, data), "--radius", 12e-3, "--scale_factor", 3)
+    expected = {"kn": 2e8, "bond_tension": 7e6 / 6, "bonding_gap": 1e-3, "grain_edge": 4e-3}
+    assert {name: found[name] for name in expected} == pytest.approx(expected)
+
+
 @pytest.mark.parametrize("law, radius, expected", [
     ("damage", 2.0, {"Rn": 2e5, "kn": 2e10, "H": 1e10}), ("padova", 2.0, {
         "padova_m": 2e8 / 2**(1 / 3), "padova_r": -2e5, "padova_eta": 0.8, "padova_cohesion": 2.5e5,
         "padova_tension_b2": -5e9})])
 def test_every_law_keeps_its_stresses_over_the_radius(law, radius, expected, tmp_path):
     values = {name: p.default for name, p in OF_ROCK.items()}
-    used = {name: values[name] for name, p in OF_ROCK.items() if law in (p.when or {"bond_law": (law,)})["bond_law"]}
+    used = {name: values[name] for name, p in OF_ROCK.items() if law in (p.when or {}).get("bond_law", (law,))
+            and "grain_edge" not in (p.when or {})}
     data = copy.deepcopy(ROCK)
     data["plane"]["parameters"] = {**used, "bond_law": law}
     found = read(PLANE, "--rock", written(tmp_path, data), "--radius_min", radius * 1e-3, "--radius_max",

@@ -4,9 +4,10 @@ import pytest
 from rockwear.kernels.bond_laws import BOND_LAWS
 from rockwear.kernels.checks import ParameterError
 from rockwear.kernels.parameter import (
-    Group, Parameter, Presets, above_zero, choice, density, duration, flag, integer, law_parameters, listed, number,
-    numbers, speed, stiffness, text)
+    Above, Fixed, Group, Parameter, Presets, above_zero, choice, density, duration, flag, integer, law_parameters,
+    listed, number, numbers, speed, stiffness, text)
 from rockwear.run import parameters
+from rockwear.scenes.parameters import given
 
 BONDS = Group("bonds", (Parameter("bond_law", "brittle", "", choice(*BOND_LAWS), "law of the bonds"),
                         *law_parameters(BOND_LAWS, "bond_law")))
@@ -136,6 +137,37 @@ def test_presets_give_defaults_one_after_the_other(words, height, width):
               Parameter("wide", 0.0, "", number(0), "-", presets=Scaled("width", "height"))]
     values = parameters.read(groups, words.split())
     assert (values["height"], values["width"]) == (height, width)
+
+
+@pytest.mark.parametrize("words, height, width", [
+    ("", 1.0, 1.0), ("--whole", 3.0, 5.0), ("--whole false", 1.0, 1.0), ("--width 7 --whole=true", 3.0, 7.0)])
+def test_a_flag_gives_fixed_defaults(words, height, width):
+    groups = [*(Parameter(name, 1.0, "m", above_zero, "-") for name in ("height", "width")),
+              Parameter("whole", False, "", flag, "-", presets=Fixed(height=3.0, width=5.0))]
+    values = parameters.read(groups, words.split())
+    assert (values["height"], values["width"]) == (height, width)
+
+
+def test_what_is_used_above_a_number_alone(capsys):
+    groups = [Parameter("edge", 0.0, "m", number(0), "-"),
+              Parameter("strength", 1.0, "", number(0), "-", when={"edge": Above(0)})]
+    assert parameters.read(groups, ["--edge", "1e-3", "--strength", "2"])["strength"] == 2.0
+    with pytest.raises(ParameterError, match="^strength = 2: must be left out with edge = 0$"):
+        parameters.read(groups, ["--strength", "2"])
+    parameters.describe(groups)
+    assert "only with edge above 0" in capsys.readouterr().out
+
+
+def test_what_a_scene_gives_itself_goes_with_all_that_it_excludes():
+    first = Parameter("tool", "a", "", choice("a", "b"), "-")
+    group = Group("tool", (first, Parameter("of_a", 1.0, "", number(0), "-", when={"tool": ("a",)}),
+                           Parameter("of_b", 1.0, "", number(0), "-", when={"tool": ("b",), "heat": (True,)})))
+    names = [[p.name for p in group] for group in given([group, HEAT], tool="b", heat=False)]
+    assert names == [[]]
+    found = given([group, HEAT], tool="b", heat=True)
+    assert [[p.name for p in group] for group in found] == [
+        ["of_b"], ["bond_conductance", "hardness_table", "convection", "shank"]]
+    assert found[1].when is None and parameters.read(found, ["--shank", "fixed"])["shank"] == "fixed"
 
 
 @pytest.mark.parametrize("words, error", [

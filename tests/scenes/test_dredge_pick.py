@@ -131,6 +131,11 @@ def test_bad_input_is_refused_in_one_line(tmp_path):
     cases = [arguments({**TINY, **values, "out": tmp_path / "out"}) for values, _ in REFUSED]
     for (code, said), (_, words) in zip(refusals(SCRIPT, tmp_path, cases), REFUSED, strict=True):
         assert_refused(code, said, words)
+    full = [["--full=true", "--window_behind", "0.1"], ["--full", "false", "--run_out", "0.1"]]
+    for words, (code, said) in zip(("window_behind = 0.1 m: must be left out with window = false",
+                                    "run_out = 0.1 m: must be left out with window = true"),
+                                   refusals(SCRIPT, tmp_path, full), strict=True):
+        assert_refused(code, said, words)
     run = dredge(tmp_path / "out", feed=0.01)
     assert_refused(run.code, run.stderr, "feed = 0.01")
     assert not (tmp_path / "out").exists()

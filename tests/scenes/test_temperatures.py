@@ -103,9 +103,14 @@ def test_a_stopped_ripper_resumes_to_the_last_bit(passes, tmp_path):
 def test_bad_input_ends_in_one_line(tmp_path):
     cases = [({"velocities": "4,fast"}, "velocities = fast"),
              ({"velocities": "4,0"}, "velocities = 0 m/s: must be greater than 0"),
+             ({"velocities": "4,0.4,4.0"}, "velocities = 4,0.4,4 m/s: must be each given once"),
+             ({"conduction": "false"}, "conduction = false: must be true"),
+             ({"convection": 0, "emissivity": 0, "contact_conductance": 0}, "convection = 0 W/m2K: must be greater "
+              "than 0 where emissivity and contact_conductance are 0"),
              ({"wear_velocity": 0.5}, "wear_velocity = 0.5 m/s: must be one of velocities = 4,0.4,0.04"),
              *(({name: value}, f"{name} = {value}: must be a known parameter") for name, value in (
-                 ("cycles", 3), ("heat", "false"), ("shank", "fixed"), ("time_scale", 2), ("tool", "segments")))]
+                 ("cycles", 3), ("heat", "false"), ("shank", "fixed"), ("time_scale", 2), ("tool", "segments"),
+                 ("segment", 1e-3), ("thermal_radius", 5e-4)))]
     said = refusals(RIPPER, tmp_path, [arguments({**PASSES, **values, "out": tmp_path / "out"}) for values, _ in cases])
     for (_, words), case in zip(cases, said):
         assert_refused(*case, words)
