@@ -145,7 +145,7 @@ def run(steps, skipped=0):
                 if step % period == 0:
                     visit()
             if failures:
-                raise failures.pop()
+                raise failures[0]
     finally:
         yade_time += 1e-9 * (sum(engine.execTime for engine in native) - before)
 

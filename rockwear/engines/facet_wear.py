@@ -2,7 +2,6 @@
 import math
 import numpy as np
 
-from yade import O
 
 from rockwear.engines.base import RunEnded
 from rockwear.engines.facet_contact import SLIP
@@ -57,9 +56,9 @@ class FacetWear(WearEngine):
         try:
             moved = self.boundary.wear(volume)
         except WornAway as end:
-            raise RunEnded(f"the tool is worn away at t = {O.time:g} s: {end}", True) from None
+            raise RunEnded(f"the tool is worn away: {end}", True) from None
         except Folded as end:
-            raise RunEnded(f"the tool's shape cannot follow its wear at t = {O.time:g} s: {end}", False) from None
+            raise RunEnded(f"the tool's shape cannot follow its wear: {end}", False) from None
         if moved:
             if self.boundary.remeshed != remeshed:
                 self.contact.neighbours = self.boundary.neighbours()
@@ -86,7 +85,7 @@ class FacetWear(WearEngine):
             raise self._too_fast(f"a rock particle has come to lie inside of it at {place}")
 
     def _too_fast(self, words):
-        return RunEnded(f"the tool's shape cannot follow its wear at t = {O.time:g} s: {words}; "
+        return RunEnded(f"the tool's shape cannot follow its wear: {words}; "
                         f"lower wear_acceleration = {self.wear_acceleration:g}", False)
 
     @property

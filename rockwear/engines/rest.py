@@ -20,7 +20,7 @@ class Rest(Engine):
 
     def act(self):
         self.calm = self.calm + 1 if self.watching() and utils.kineticEnergy() < self.limit else 0
-        if self.calm == self.visits_at_rest:
+        if self.calm >= self.visits_at_rest:
             raise RunEnded("the heap is at rest", True)
 
     def state(self):

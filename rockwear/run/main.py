@@ -143,7 +143,7 @@ class Run:
         self.name, self.scene, self.values, self.folder, self.began = name, scene, values, folder, began
         self.identity = identity
         self.stopped_by = None
-        self.snapshots, self.memory, self.over = 0, [], False
+        self.snapshots, self.memory, self.ended = 0, [], ""
         self.next_snapshot = 0.0
         self.wall_before = 0.0
         self.setup_time = self.loop_time = self.checkpoint_time = 0.0
@@ -161,7 +161,7 @@ class Run:
             state, directory = checkpoint.load(self.folder / "checkpoint", self.identity)
             self.scene.restore(state["scene"], directory, self.folder)
             self.snapshots, self.next_snapshot = int(state["snapshots"]), float(state["next_snapshot"])
-            self.wall_before, self.over = float(state["wall_time"]), self.scene.finished
+            self.wall_before, self.ended = float(state["wall_time"]), state["ended"]
             self._remove_later_snapshots()
         else:
             for old in FOLDERS:
@@ -186,14 +186,15 @@ class Run:
         """Run to the end. -> exit code."""
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, self._on_signal)
-        ended, code = "finished", 0
+        ended, code = self.ended or "finished", 0
         try:
             if self.values["resume"]:
                 # What was written may be later than the checkpoint.
                 self._write_tables(self.scene.output.growing_tables())
             else:
                 self._checkpoint()
-            self._loop()
+            if not self.ended:
+                self._loop()
         except RunEnded as end:
             ended, code = str(end), 0 if end.healthy else 1
         except (OSError, RuntimeError, FloatingPointError, ParameterError) as error:
@@ -204,14 +205,17 @@ class Run:
         return self._finish(ended, code)
 
     def _finish(self, ended, code):
+        now = f"t = {self.scene.time:.6g} s"
         if code:
-            print(f"error: {ended} (the last checkpoint is kept in {self.folder / 'checkpoint'})", file=sys.stderr)
+            print(f"error: {ended} ({now}; the last checkpoint is kept in {self.folder / 'checkpoint'})",
+                  file=sys.stderr)
         elif ended != "finished":
-            print(ended)
+            print(f"{ended} ({now})")
         try:
             with naming(self.folder):
-                # A run that had finished before it was resumed has them.
-                if not code and not self.over:
+                # A run that had ended before it was resumed has them.
+                if not code and not self.ended:
+                    self.ended = ended
                     self._snapshot()
                     self._checkpoint()
                 warnings = self.scene.output.warnings()
@@ -222,7 +226,7 @@ class Run:
                 if not code and self.values["report"]:
                     report.write(self.folder)
                     print(f"report: {self.folder / 'report.html'}")
-        except OSError as error:
+        except (OSError, ParameterError) as error:
             # Of a disk that was full before it has been said.
             if not code:
                 print(f"error: {error}", file=sys.stderr)
@@ -288,7 +292,7 @@ class Run:
     def _checkpoint(self):
         begin = time.time()
         state = {"scene": self.scene.state(), "snapshots": self.snapshots, "next_snapshot": self.next_snapshot,
-                 "wall_time": self.wall_before + time.time() - self.began}
+                 "wall_time": self.wall_before + time.time() - self.began, "ended": self.ended}
         self._write_tables(self.scene.output.growing_tables())
         with naming(self.folder / "checkpoint"):
             checkpoint.save(self.folder / "checkpoint", identity=self.identity, state=state,

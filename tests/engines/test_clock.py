@@ -1,4 +1,4 @@
-"""The clock of YADE's own time counts no Python."""
+"""The clock of YADE's own time counts no Python, and the first failure of a step is raised."""
 import json
 
 from tests.running import ROOT, run_script
@@ -10,3 +10,5 @@ def test_yades_own_time_has_neither_engines_nor_runners_in_it(tmp_path):
     assert done.code == 0, done.stderr
     found = json.loads(file.read_text(encoding="utf-8"))
     assert 0.0 < found["yade"] < found["all"] - found["python"]
+    # What fails first is the cause.
+    assert found["raised"] == "first"

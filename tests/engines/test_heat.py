@@ -76,6 +76,11 @@ def test_other_rock_is_not_exposed_before_the_next_search_for_surfaces(found):
     assert 300.0 > first[1] > second[1] > third[1] > 280.0 and got["missing"] < 1e-14
 
 
+def test_rock_that_is_not_there_stays_as_warm_as_it_is(found):
+    gone, there = found["absent"]
+    assert gone == 300.0 and 280.0 < there < 299.9
+
+
 def test_spheres_in_space_close_their_balance(found):
     got = found["particles"]
     assert got["gone"] == 10 and got["hottest"] and got["shank"] == 0.0 and got["missing"] < 1e-14

@@ -141,8 +141,8 @@ def test_truncated_and_foreign_checkpoints_are_refused(tmp_path):
 
 
 def test_a_tool_worn_away_ends_cleanly(tmp_path):
-    run = tooth_cycles(tmp_path / "out", wear_acceleration=1e9, heat_period=1e-5,
-                       **{**TINY, "start_up": 1e-3, "report": "true"})
+    fast = dict(TINY, wear_acceleration=1e9, heat_period=1e-5, start_up=1e-3)
+    run = tooth_cycles(tmp_path / "out", **{**fast, "report": "true"})
     assert run.code == 0, run.stderr
     assert "worn away" in run.summary["ended"] and "worn away" in run.stdout
     assert value(run, "mass_lost") > 0.9 and (run.out / "checkpoint/current.json").exists()
@@ -152,6 +152,10 @@ def test_a_tool_worn_away_ends_cleanly(tmp_path):
     assert "How far the acceleration can be trusted" in (run.out / "report.html").read_text(encoding="utf-8")
     mass = run.summary["balances"]["mass"]
     assert abs(mass["unexplained"]) < 1e-12 * mass["initial"] * 1e6
+    # Nothing is left to go on with.
+    again = tooth_cycles(run.out, "--resume", **fast)
+    assert again.code == 0 and again.summary["ended"] == run.summary["ended"], again.stderr
+    assert again.summary["results"] == run.summary["results"]
 
 
 def test_a_simulation_that_blows_up_ends_in_one_line(tmp_path):
