@@ -247,10 +247,11 @@ class Bonds(BondLog):
         self.softening_bonds = dict(sorted(self.softening_bonds.items()))
 
     def _shift(self, n, shift):
+        for group in (self.softening_bonds, self.returned):
+            if n in group:
+                group[n].overlap += shift
         if n in self.softening_bonds:
-            softening = self.softening_bonds[n]
-            softening.overlap += shift
-            interaction, phys = softening.interaction, softening.phys
+            interaction, phys = self.softening_bonds[n].interaction, self.softening_bonds[n].phys
         else:
             interaction, phys = self.elastic[n] if self.status[n] == INTACT else self.broken[n]
         phys.initD += shift

@@ -107,8 +107,8 @@ class RockAssembly:
     positions: (n, 2 or 3) m; radii: (n,) m; width, height (and depth): m of the box; density: kg/m3 of the bulk; pairs:
     (m, 2), i < j; scale: (n,), by how much the grading of the rock has enlarged each particle. Particles carry the
     mass of the pores, bulk density over solid fraction [Rojek 2014, eq. 63]; porosity: of the packing, where it does
-    not fill the box. `fixed` (n,) bool: particles that do not move; `side` (n,): 1 and 2 on the two sides of a cut,
-    0 elsewhere. `bond` gives the bonds their laws.
+    not fill the box. `fixed` (n,) bool: particles that do not move; `absent` (n,) bool: that are not there; `side`
+    (n,): 1 and 2 on the two sides of a cut, 0 elsewhere. `bond` gives the bonds their laws.
     """
 
     laws = grains = None
@@ -134,7 +134,8 @@ class RockAssembly:
             self.porosity = 1 - float(volumes.sum()) / (width * height * depth)
             self.masses = density / (1 - self.porosity) * volumes
             self.inertias = 0.4 * self.masses * radii**2
-        self.fixed, self.side = np.zeros(self.count, bool), np.zeros(self.count, int)
+        self.fixed, self.absent = np.zeros((2, self.count), bool)
+        self.side = np.zeros(self.count, int)
         self.extent = width, height
         """(2,) m that pictures in the plane show."""
 

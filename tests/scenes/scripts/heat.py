@@ -62,7 +62,8 @@ class Engines:
     def __init__(self, pieces, dimension):
         self.pieces = pieces
         self.pairs = np.empty((0, 2), int)
-        self.count, self.radii, self.fixed = 2, np.full(2, 2e-3), np.zeros(2, bool)
+        self.count, self.radii = 2, np.full(2, 2e-3)
+        self.fixed, self.absent = np.zeros((2, 2), bool)
         self.positions = ROCK[:, :dimension]
         self.put({}, {})
 
@@ -276,6 +277,16 @@ def rock_renewed():
             "missing": missing(heat)}
 
 
+def absent():
+    """Temperatures in the wind of a particle that is not there and one that is."""
+    tool, body = in_plane()
+    engines = Engines(tool.count, 2)
+    engines.absent[0] = True
+    heat = engine(body, engines, convection=1e4, emissivity=0.9)
+    visit(heat)
+    return heat.network.temperature[:2].tolist()
+
+
 def particles():
     """A tool of spheres: friction, exchange, convection, wear, loose pieces and a fixed shank in one balance."""
     outline = tooth(height=0.02, width=0.012, rake=0.2, clearance=0.1, tip_radius=2e-3)
@@ -299,7 +310,7 @@ def particles():
 
 
 MAKERS = {"plane": in_plane, "space": in_space}
-found = {"renewed": renewed(), "rock renewed": rock_renewed(), "particles": particles()}
+found = {"renewed": renewed(), "rock renewed": rock_renewed(), "absent": absent(), "particles": particles()}
 for name, maker in MAKERS.items():
     found[name] = {"radiating": radiating(maker), "friction": friction(maker), "exchange": exchange(maker),
                    "restart": restart(maker), "worn": {str(a): worn(maker, a) for a in (1.0, 1e4)}}
