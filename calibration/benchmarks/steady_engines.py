@@ -40,7 +40,7 @@ def every_step(scene):
     base.register(scene.engines)
 
 
-def books(scene):
+def balances(scene):
     """{what: number} of what the engines add up, by now."""
     balance, heat = scene.output.energy_balance(), scene.heat
     heat.act()
@@ -52,12 +52,12 @@ def books(scene):
 
 
 def sampled(scene, state, folder, change=lambda scene: None):
-    """Run the compared steps from `state`. -> what the books gain, and the worn depths."""
+    """Run the compared steps from `state`. -> what the balances gain, and the worn depths."""
     scene.restore(state, folder, folder)
     change(scene)
-    before = books(scene)
+    before = balances(scene)
     base.run(SAMPLED)
-    after, depth = books(scene), scene.output.snapshot()["worn_depth"]
+    after, depth = balances(scene), scene.output.snapshot()["worn_depth"]
     gained = {name: after[name] - before[name] for name in after if name not in ("tip temperature", "kinetic energy")}
     return {**after, **gained}, np.asarray(depth)
 
@@ -102,7 +102,7 @@ def critical_steps(scene):
     kn, kt = rock.stiffness()
     left = critical_time_step(positions=rock_positions(rock), radii=rock.radii, masses=rock.masses,
                               inertias=rock.inertias, bonds=rock.pairs[intact], kn=kn[intact], kt=kt[intact],
-                              fixed=np.flatnonzero(rock.fixed))
+                              fixed=np.flatnonzero(rock.fixed), ratcheting_free=True)
     return {"intact": left / scene.bonded_step, "under the tool": scene.contact_step / scene.bonded_step}
 
 

@@ -28,6 +28,7 @@ from rockwear.model.contact import PLANE, SPACE
 from rockwear.model.rock import Block, Specimen
 from rockwear.run import vtk
 from rockwear.scenes import parameters, parts, yade_scene
+from rockwear.scenes.accuracy import chosen_step
 from rockwear.scenes.balances import energy_warnings, with_residual
 from rockwear.scenes.output import Output, crack_table, density_map
 from rockwear.scenes.scene import Scene
@@ -179,13 +180,11 @@ class SpecimenTest(Scene):
         self.slopes = np.linalg.pinv(points)[1:]
 
     def _choose_time_step(self):
-        v, rock, (kn, kt) = self.v, self.rock, self.rock.stiffness()
+        rock, (kn, kt) = self.rock, self.rock.stiffness()
         self.critical_step = critical_time_step(
             positions=rock.positions, radii=rock.radii, masses=rock.masses, inertias=rock.inertias, bonds=rock.pairs,
-            kn=kn, kt=kt)
-        require(v.time_step <= self.critical_step, "time_step", v.time_step,
-                f"at most the stable step {self.critical_step:.3e} of this scene", "s")
-        self.time_step = v.time_step or v.time_step_fraction * self.critical_step
+            kn=kn, kt=kt, ratcheting_free=rock.depth is None)
+        self.time_step = chosen_step(self.v, self.critical_step)
 
     def build(self):
         """Fill YADE's scene: bodies, bonds, engines; the specimen already in its mean motion."""

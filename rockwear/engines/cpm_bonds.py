@@ -94,13 +94,13 @@ class CpmBonds(BondLog):
     tells from a straight path to where it is found.
 
     C++ knows no damage by slip: a look counts what the bond slipped since the last one and raises the damage by it. A
-    bond that slip has broken stays a contact in YADE until it opens; what it slips until then is booked here too. And
+    bond that slip has broken stays a contact in YADE until it opens; what it slips until then counts here too. And
     C++ takes the part of the cohesion that is left to be that of the stiffness: every step sets the cohesion so that
     what is left is what the law says.
 
     C++ crushes a bond in compression; the work follows from what it is shorter, epsNPl. A look hardens it. A crushed
     bond that opens to its end stays a contact, without cohesion, as long as its particles are nearer than when it was
-    made, and books its slip as one that slip has broken.
+    made, and its slip counts as that of one that slip has broken.
 
     period: steps between two looks; 1: looks and samples in every step. The engine itself is visited in every step.
     """

@@ -255,13 +255,6 @@ def contact_layout():
 
 
 @cache
-def contact_columns(*names):
-    """(c, 1) how far behind the constants, or the geometry, of a contact vectors and numbers of these names lie."""
-    layout = contact_layout()
-    return np.array([[layout[name] + along] for name in names for along in range(1 if name in _CONSTANTS else 3)])
-
-
-@cache
 def kernel_layout():
     """(18,) what compiled.CONTACT says, of contacts and of bodies. Raises ParameterError."""
     bodies, states = [Body() for _ in range(TRIED)], [State() for _ in range(TRIED)][::-1]
@@ -342,24 +335,6 @@ def _is_list(ends):
     begin, end, _ = ends
     return begin == end or (begin % SIZE == 0 and 0 < begin < end and (end - begin) % (3 * SIZE) == 0
                             and len(_peek(begin, 1)) == 1)
-
-
-def in_contact(places):
-    """Which contacts of these places (k,) are in contact now, (l,), and the places of their constants and of their
-    geometry, (l,) each. The contacts must be kept."""
-    layout = contact_layout()
-    phys, geom = (WORDS.take(places + layout[name], mode="wrap") for name in ("phys", "geom"))
-    real = ((phys != 0) & (geom != 0)).nonzero()[0]
-    return real, pointed(phys[real]), pointed(geom[real])
-
-
-def all_contacts():
-    """(k,) indices in MEMORY of all contacts of the scene, also those that the collider holds possible only.
-
-    What they are read by must be read before YADE's loop goes on, or while Python holds them. Raises ParameterError.
-    """
-    begin, end = WORDS[list_of_contacts():][:2].tolist()
-    return pointed(WORDS[pointed(begin):pointed(end):2])
 
 
 def list_of_contacts():

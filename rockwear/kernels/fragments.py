@@ -1,4 +1,4 @@
-"""Fragments of broken rock: which particles still hang together, and how large the pieces are."""
+"""Fragments of broken rock: which particles are still bonded, and how large the pieces are."""
 from typing import NamedTuple
 
 import numpy as np

@@ -4,6 +4,14 @@ from dataclasses import dataclass
 from rockwear.kernels.checks import require
 
 
+def chosen_step(v, critical):
+    """The time step (s) that v.time_step (s) or, where it is 0, v.time_step_fraction gives a scene with this critical
+    one (s). Raises ParameterError for one above it."""
+    require(v.time_step <= critical, "time_step", v.time_step, f"at most the stable step {critical:.3e} of this scene",
+            "s")
+    return v.time_step or v.time_step_fraction * critical
+
+
 @dataclass(frozen=True)
 class Accuracy:
     """The knobs of a scene, each with its price in calibration/results/bench.md.
@@ -20,12 +28,3 @@ class Accuracy:
     heat_period: float
     surface_period: float
     record_period: float
-
-    def step(self, critical):
-        """The time step (s) of a scene with this critical one. Raises ParameterError for one above it."""
-        if not self.time_step > 0:
-            return self.time_step_fraction * critical
-        require(self.time_step <= critical, "time_step", self.time_step,
-                f"at most the stable step {critical:.3e} of this scene",
-                "s")
-        return self.time_step

@@ -14,6 +14,7 @@ from rockwear.engines.shear_rotation import ShearRotation
 from rockwear.engines.velocity_increment import VelocityIncrement
 from rockwear.model.contact import PLANE
 from rockwear.scenes import yade_scene
+from rockwear.scenes.accuracy import chosen_step
 from rockwear.scenes.balances import StoredEnergy
 from rockwear.scenes.cut_output import CutOutput
 from rockwear.scenes.scene import Scene
@@ -67,7 +68,7 @@ class Cut(Scene):
         else:
             self.bonded_step, self.contact_step = space_steps(rock, bond_law, tool.contact_law)
         self.critical_step = min(self.bonded_step, self.contact_step)
-        self.time_step = accuracy.step(self.critical_step)
+        self.time_step = chosen_step(accuracy, self.critical_step)
         self._plan(programme.stages())
         programme.planned()
         self.energy = StoredEnergy(self.stored_energy)
@@ -188,7 +189,7 @@ class Cut(Scene):
         if not self.tool.bodies.body_of:
             # A simulation that blows up may wear the tool away before its guard comes by.
             self.guard.act()
-            raise RunEnded(f"the tool is worn away at t = {self.time:g} s", True)
+            raise RunEnded("the tool is worn away", True)
 
     # ---- stages
 
@@ -223,7 +224,7 @@ class Cut(Scene):
         self.programme.begin_stage(folder)
         self.energy.begin()
         if not self.finished and not self.programme.reaches_rock():
-            raise RunEnded(f"nothing of the tool reaches the rock any more at t = {self.time:g} s", True)
+            raise RunEnded("nothing of the tool reaches the rock any more", True)
         self.programme.stage_begun(folder)
 
     def _set_damping(self):
@@ -231,13 +232,13 @@ class Cut(Scene):
         if self.damping and rates:
             self.damping.rate = rates[min(self.stage, len(rates) - 1)]
 
-    def close_books(self):
+    def close_balances(self):
         """Rock is about to be replaced: what it stores now is what it has gained."""
         if self.heat:
             self.heat.act()
         self.energy.close()
 
-    def open_books(self, numbers):
+    def open_balances(self, numbers):
         """The particles `numbers` (k,) are untouched rock now."""
         if self.damping:
             self.damping.connect()

@@ -14,7 +14,7 @@ class CutRecord:
     """What slabs of a model.rock_mass.RockMass are like when they leave the window.
 
     Places count from where the tool's tip began: x along the cut, y above its path. A chip is measured whole when the
-    first of its particles leaves, with all particles that hang together then; what it breaks into later is no chip
+    first of its particles leaves, with all particles that are still bonded then; what it breaks into later is no chip
     again.
 
     start: (2,) m.
@@ -23,30 +23,30 @@ class CutRecord:
     def __init__(self, *, rock, start):
         self.rock, self.start = rock, start
         self.groove, self.chips = [], []
-        self.booked = np.zeros(rock.count, bool)
+        self.noted = np.zeros(rock.count, bool)
         self.bins = max(1, round(rock.slab_length / (2 * float(rock.radii.min()))))
 
-    def book(self, *, positions, intact, distance):
+    def note(self, *, positions, intact, distance):
         """The slab behind is about to leave. positions (n, 2) m; intact (m,) bool; distance: m of cut so far."""
         rock = self.rock
         leaving = (rock.slab == rock.passed % SLABS) & ~rock.absent
         groove, chips, members = self._found(positions, intact, distance, rock.begin + rock.slab_length, leaving)
         self.groove += groove
         self.chips += chips
-        self.booked |= members
-        self.booked[leaving] = False
+        self.noted |= members
+        self.noted[leaving] = False
 
     def record_free_chips(self, *, positions, intact, distance, pairs, held):
         """Record the chips that nothing touches, which are about to be removed. pairs, held: see kernels.fragments.
         free_fragments. -> their particles (k,)."""
         found = self._fragments(positions, intact)
         gone = free_fragments(found.label, pairs, held)
-        self.chips += self._chips(found, np.unique(found.label[gone & ~self.booked]), distance)
-        self.booked[gone] = False
+        self.chips += self._chips(found, np.unique(found.label[gone & ~self.noted]), distance)
+        self.noted[gone] = False
         return np.flatnonzero(gone)
 
     def whole(self, *, positions, intact, distance, behind):
-        """(groove, chips) rows: what is booked, and what stands and lies in the window further back than x = `behind`
+        """(groove, chips) rows: what is noted, and what stands and lies in the window further back than x = `behind`
         (m) now."""
         groove, chips, _ = self._found(positions, intact, distance, behind,
                                        (positions[:, 0] < behind) & ~self.rock.absent)
@@ -60,7 +60,7 @@ class CutRecord:
         heights = groove_profile(positions, rock.radii, (found.label < 0) & ~rock.absent, edges) - self.start[1]
         middles = 0.5 * (edges[1:] + edges[:-1]) - self.start[0]
         groove = [row for row in zip(middles.tolist(), heights.tolist()) if row[0] > 0]
-        labels = np.unique(found.label[leaving & ~self.booked & (found.label >= 0)])
+        labels = np.unique(found.label[leaving & ~self.noted & (found.label >= 0)])
         return groove, self._chips(found, labels, distance), np.isin(found.label, labels)
 
     def _fragments(self, positions, intact):
@@ -77,13 +77,13 @@ class CutRecord:
     def state(self):
         """What a restart needs."""
         return {"groove": np.array(self.groove, float).reshape(-1, len(GROOVE)),
-                "chips": np.array(self.chips, float).reshape(-1, len(CHIPS)), "booked": self.booked.copy()}
+                "chips": np.array(self.chips, float).reshape(-1, len(CHIPS)), "noted": self.noted.copy()}
 
     def restore(self, state):
         """Take back what `state` gave."""
         self.groove = [tuple(row) for row in state["groove"].tolist()]
         self.chips = [(row[0], int(row[1]), *row[2:]) for row in state["chips"].tolist()]
-        self.booked = state["booked"].astype(bool)
+        self.noted = state["noted"].astype(bool)
 
 
 def table(names, rows):

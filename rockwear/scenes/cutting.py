@@ -52,10 +52,10 @@ def box(v):
 def tool(v):
     """The tool assembly, no larger than the specimen."""
     vertices = parts.outline(v)
-    width, height = np.ptp(vertices, axis=0)
-    require(width <= v.width, "tooth_width", float(width), f"at most the specimen's width {v.width:g}", "m")
-    require(height <= v.height, "tooth_height", float(height), f"at most the specimen's height {v.height:g}", "m")
-    require(height > v.depth_of_cut, "tooth_height", float(height), f"more than depth_of_cut = {v.depth_of_cut:g}", "m")
+    width, height = np.ptp(vertices, axis=0).tolist()
+    parts.check_extent(v, "tooth_width", width, width <= v.width, f"at most the specimen's width {v.width:g} m")
+    parts.check_extent(v, "tooth_height", height, height <= v.height, f"at most the specimen's height {v.height:g} m")
+    parts.check_height(v, vertices, "depth_of_cut", v.depth_of_cut)
     return parts.plane_tool(v, vertices)
 
 

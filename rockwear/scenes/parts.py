@@ -1,6 +1,8 @@
 """Parts of a cut, made from a scene's parameters."""
 import math
 
+import numpy as np
+
 from rockwear.kernels.archard import BRINELL, KELVIN, MET71, MET91, Hardness
 from rockwear.kernels.bond_laws import BOND_LAWS
 from rockwear.kernels.checks import ParameterError, require
@@ -56,8 +58,22 @@ def outline(v):
     return vertices - [0.0, vertices[:, 1].min()]
 
 
+def check_extent(v, name, found, good, rule):
+    """Raise ParameterError where an extent (m) of the tool is not good: by `name`, its parameter, or the outline's."""
+    given = ("outline", f"{v.outline}, {found:g} m in {name.removeprefix('tooth_')}") if v.outline else (name, found)
+    require(good, *given, rule, "" if v.outline else "m")
+
+
+def check_height(v, vertices, name, depth):
+    """Raise ParameterError for an outline (k, 2) m no higher than the depth (m) of its cut, parameter `name`."""
+    height = float(np.ptp(vertices[:, 1]))
+    check_extent(v, "tooth_height", height, height > depth, f"more than {name} = {depth:g} m")
+
+
 def hardness(v):
     """Hardness of the tool: constant, the table's at one temperature, or the table."""
+    if v.hardness > 0:
+        return Hardness.constant(v.hardness)
     table = HARDNESS[v.hardness_table]
     low, high = table.limits
     used = ("tool_temperature", "rock_temperature", "ambient_temperature",
@@ -66,8 +82,6 @@ def hardness(v):
         value = getattr(v, name)
         require(low <= value <= high, name, value,
                 f"inside the hardness table of {v.hardness_table}, {low:g} to {high:g}", "K")
-    if v.hardness > 0:
-        return Hardness.constant(v.hardness)
     if v.hardness_temperature >= 0:
         require(low <= v.hardness_temperature <= high, "hardness_temperature", v.hardness_temperature,
                 f"inside the hardness table of {v.hardness_table}, {low:g} to {high:g}, or -1 for the tool's own", "K")

@@ -64,7 +64,8 @@ class ToolWear:
                  f"is known to {100 * error:.2g} % only")
         advice = "run longer" if trusted >= self.acceleration else (
             f"use wear_acceleration = {trusted:.2g} at most instead of {self.acceleration:g}, and run that much longer")
-        return [f"where the tool wears {known}, and {tool.piece} goes in {events:.2g} contact events: to trust the "
+        goes = f", and {tool.piece} goes in {events:.2g} contact events" if math.isfinite(events) else ""
+        return [f"where the tool wears {known}{goes}: to trust the "
                 f"distribution of wear to {100 * self.tolerance:g} %, {advice}"]
 
 

@@ -87,10 +87,10 @@ class RockWindow:
     def advance(self, distance=0.0):
         """Move on by a slab; distance: m that the tool has gone."""
         scene, rock, bonds = self.scene, self.rock, self.scene.bonds
-        scene.close_books()
+        scene.close_balances()
         positions, intact = rock_positions(rock), bonds.status == INTACT
         if self.record:
-            self.record.book(positions=positions, intact=intact, distance=distance)
+            self.record.note(positions=positions, intact=intact, distance=distance)
         if self.sides:
             self.boundary.release(self.held)
         moved = rock.advance()
@@ -116,7 +116,7 @@ class RockWindow:
         scene.skip(O.iter - before)
         self._hold_bottom(bottom)
         self._hold_sides()
-        scene.open_books(moved)
+        scene.open_balances(moved)
 
     def remove_free_chips(self, distance):
         """Remove the chips that nothing touches: neither rock, nor another chip, nor the tool, nor what holds the
@@ -129,14 +129,14 @@ class RockWindow:
             held=np.concatenate([self.held, touched]).astype(int))
         if not len(gone):
             return
-        scene.close_books()
+        scene.close_balances()
         rock.absent[gone] = True
         self._put_aside(gone)
         O.interactions.eraseNonReal()
         left = np.isin(rock.pairs, gone).any(axis=1)
         bonds.renew(np.flatnonzero(left), np.zeros(0, int), np.zeros(0))
         self.cleared += len(gone)
-        scene.open_books(gone)
+        scene.open_balances(gone)
 
     def _put_aside(self, numbers):
         self._put(numbers, self.rock.places[numbers], FIXED)

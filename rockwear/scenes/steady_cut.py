@@ -79,8 +79,7 @@ def make(values):
     parts.check_radii(v)
     check_window(v)
     outline = parts.outline(v)
-    require(np.ptp(outline[:, 1]) > v.depth_of_cut, "tooth_height", float(np.ptp(outline[:, 1])),
-            f"more than depth_of_cut = {v.depth_of_cut:g}", "m")
+    parts.check_height(v, outline, "depth_of_cut", v.depth_of_cut)
     tool = parts.plane_tool(v, outline)
     # The rock takes longest to pack: all else is refused before.
     rock = RockMass(width=v.window_behind + v.window_ahead, height=v.window_height, radius_min=v.radius_min,

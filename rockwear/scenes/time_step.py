@@ -22,7 +22,7 @@ def _plane_steps(rock, contact, bond_damping, positions, shown):
     (kn, kt), (cn, ct) = rock.stiffness(), coefficients(rock, bond_damping)
     common = dict(positions=positions, radii=rock.radii, masses=rock.masses, inertias=rock.inertias,
                   bonds=rock.pairs[shown], kn=kn[shown], kt=kt[shown], cn=cn[shown], ct=ct[shown],
-                  fixed=np.flatnonzero(rock.fixed))
+                  fixed=np.flatnonzero(rock.fixed), ratcheting_free=True)
     bonded = critical_time_step(**common)
     # Any free disc may be the one that the tool presses, from any side, with two of its particles at once.
     free = np.flatnonzero(~rock.fixed)

@@ -33,7 +33,7 @@ def chip_of(rock):
 
 def drive(rock, intact, record, slabs):
     for k in range(slabs):
-        record.book(positions=rock.places, intact=intact & rock.bonded, distance=(k + 1) * rock.slab_length)
+        record.note(positions=rock.places, intact=intact & rock.bonded, distance=(k + 1) * rock.slab_length)
         rock.advance()
 
 
@@ -75,23 +75,23 @@ def test_a_free_chip_that_is_removed_counts_once_also_where_its_first_slab_has_l
     drive(rock, intact, record, slabs)
     # Rock that has entered is no part of it.
     rock.absent[rock.laps > 0] = True
-    assert (record.booked & chip).any() == (slabs > 0)
+    assert (record.noted & chip).any() == (slabs > 0)
     touched = np.flatnonzero(chip & ~rock.absent)[:1]
     there = dict(positions=rock.places, intact=intact & rock.bonded, distance=0.03, pairs=rock.pairs[:0])
     assert not np.isin(touched, record.record_free_chips(**there, held=touched)).any()
     gone = record.record_free_chips(**there, held=touched[:0])
-    assert np.isin(touched, gone).all() and not record.booked[gone].any()
+    assert np.isin(touched, gone).all() and not record.noted[gone].any()
     rock.absent[gone] = True
     drive(rock, intact, record, 6)
     rows = [row for row in record.chips if row[CHIPS.index("particles")] > 3]
     assert len(rows) == 1 and rows[0][CHIPS.index("particles")] == chip.sum()
 
 
-def test_a_restart_knows_what_was_booked(rock):
+def test_a_restart_knows_what_was_noted(rock):
     chip = chip_of(rock)
     intact, record = cut_through(rock, chip)
     drive(rock, intact, record, 3)
     again = CutRecord(rock=rock, start=(START, rock.height - DEPTH))
     again.restore(record.state())
     assert again.chips == record.chips and again.groove == record.groove
-    assert (again.booked == record.booked).all() and record.booked.any()
+    assert (again.noted == record.noted).all() and record.noted.any()

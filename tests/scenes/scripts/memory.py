@@ -13,6 +13,7 @@ from yade import (
     InsertionSortCollider, Interaction, InteractionLoop, Ip2_FrictMat_FrictMat_FrictPhys,
     Law2_ScGeom_FrictPhys_CundallStrack, NewtonIntegrator, O, ScGeom, State, Vector3, utils)
 
+from places import all_contacts
 from rockwear.engines import cpm_bonds, memory
 from rockwear.kernels import compiled
 from rockwear.kernels.bond_laws import Cohesive
@@ -102,19 +103,19 @@ def contacts_of_yade():
         NewtonIntegrator()]
     O.step()
     words, layout, found = memory.WORDS, memory.contact_layout(), O.interactions.all()
-    places = memory.all_contacts()
+    places = all_contacts()
     bodies = words[places + layout["bodies"]]
     pairs = np.column_stack([bodies & 0xffffffff, bodies >> 32]).tolist()
-    touching, phys, geom = memory.in_contact(places)
-    real = [k in touching for k in range(len(found))]
-    forces = {name: memory.MEMORY[phys + memory.contact_columns(name)].T.tolist()
-              for name in ("normal_force", "shear_force")}
+    pointers = {name: words[places + layout[name]] for name in ("phys", "geom")}
+    touching = (pointers["phys"] != 0) & (pointers["geom"] != 0)
+    phys, geom = (memory.pointed(found[touching]) for found in pointers.values())
+    vectors = {name: memory.MEMORY[start + layout[name] + np.arange(3)[:, None]].T.tolist()
+               for name, start in (("normal_force", phys), ("shear_force", phys), ("normal", geom))}
     there = [i.phys for i in found if i.isReal]
-    return {"bodies": (pairs, [[i.id1, i.id2] for i in found]), "real": (real, [i.isReal for i in found]),
-            "normal": (memory.MEMORY[geom + memory.contact_columns("normal")].T.tolist(),
-                       [list(i.geom.normal) for i in found if i.isReal]),
-            "normal_force": (forces["normal_force"], [list(p.normalForce) for p in there]),
-            "shear_force": (forces["shear_force"], [list(p.shearForce) for p in there]),
+    return {"bodies": (pairs, [[i.id1, i.id2] for i in found]), "real": (touching.tolist(), [i.isReal for i in found]),
+            "normal": (vectors["normal"], [list(i.geom.normal) for i in found if i.isReal]),
+            "normal_force": (vectors["normal_force"], [list(p.normalForce) for p in there]),
+            "shear_force": (vectors["shear_force"], [list(p.shearForce) for p in there]),
             "friction": (memory.MEMORY[phys + layout["friction"]].tolist(), [p.tangensOfFrictionAngle for p in there]),
             "class": (words[phys].tolist(), [memory.class_of(FrictPhys())] * len(there))}
 
