@@ -3,7 +3,7 @@
     python3 -m calibration.settings --accuracy 0.3 [--depth_of_cut 5e-3] [--of specific_energy,wear,temperature]
 
 A setting (discs in the depth of cut, speed, window) is off by what `campaigns.steady_cut` found it to move, beside
-sixteen discs at 8 m/s, and one cut by its length: its error falls as one over the root of that. Both together make the
+sixteen discs at 8 m/s, at which all were cut, and one cut by its length: its error falls as one over the root of that. Both together make the
 accuracy, a part of the mean. How far sixteen discs are off themselves is not known: nothing finer was cut. Prints the
 command of the cut, which ends by itself when its mean force is known well enough, and what it costs.
 """
@@ -29,7 +29,8 @@ TIP = 0.1
 GROUP = Group("settings", (
     Parameter("accuracy", 0.3, "", number(0.01, 1), "part of the mean by which results may be off"),
     Parameter("depth_of_cut", 5e-3, "m", number(1e-4, 0.1), "of the cut"),
-    Parameter("of", "specific_energy,wear", "", text, f"what is to be so accurate, out of {', '.join(QUANTITIES)}")))
+    Parameter("of", "specific_energy,wear", "", text, "what is to be so accurate beside the specific energy, out of "
+              + ", ".join(QUANTITIES))))
 
 
 def choose(rows, *, accuracy, quantities):
@@ -62,7 +63,7 @@ def shown(row, depths, off, of_length, depth):
     words = " ".join(f"--{name} {value:.6g}" if isinstance(value, (int, float)) else f"--{name} {value}"
                      for name, value in values.items())
     return [f"yade -n -x -j1 yade_scripts/steady_cut.py {words}",
-            f"{row['setting']}: off by {100 * off:.0f} % beside sixteen discs, by {100 * of_length:.0f} % for its "
+            f"{row['setting']}: off by {100 * off:.0f} % beside sixteen discs at the same speed, by {100 * of_length:.0f} % for its "
             f"length, some {depths} depths of cut; {depths * row['minutes_per_depth']:.0f} minutes"]
 
 
@@ -71,7 +72,8 @@ def main(words):
     command.help_if_asked()
     try:
         v = parameters.read([GROUP], words)
-        quantities = [name.strip() for name in v["of"].split(",")]
+        # A cut with another force is another cut, whatever else of it may agree.
+        quantities = list(dict.fromkeys((QUANTITIES[0], *(name.strip() for name in v["of"].split(",")))))
         unknown = [name for name in quantities if name not in QUANTITIES]
         require(not unknown, "of", v["of"], f"names out of {', '.join(QUANTITIES)}, with commas")
         rows = json.loads(MEASURED.read_text(encoding="utf-8"))

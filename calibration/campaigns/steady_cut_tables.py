@@ -24,7 +24,7 @@ ACCURACY = 0.1
 """Of the mean force, for which the length of a cut is given."""
 ERRORS_OF = {"specific_energy": "force", "wear": "friction", "temperature": "temperature"}
 """{quantity that an accuracy may be asked of: quantity of a row}; wear goes as friction at the tool."""
-OPTIONS, NO_OPTIONS = ("discs_per_depth", "velocity"), ("rock", "cut_length", "snapshot_period")
+OPTIONS, NO_OPTIONS = ("discs_per_depth", "velocity", "time_step_fraction"), ("rock", "cut_length", "snapshot_period")
 """Parameters that every setting gives, and those of a cut that are none of it."""
 JUDGED = BASE, EIGHT, FINEST, HALVED, STRONGER, BENTHEIM, MEDIUM, PADOVA, *map(depth_case, DEPTHS)
 
@@ -138,7 +138,11 @@ def scatter(row):
 
 def settings(found):
     """What calibration.settings chooses from: [{setting, options, lengths (over the depth of cut), minutes_per_depth,
-    depths_for_tenth, errors {quantity: part by which the base differs}}] of SETTINGS with three packings."""
+    depths_for_tenth, errors {quantity: part by which the base differs}}] of SETTINGS with three packings.
+
+    A setting that is not told apart from the case it was changed from in a quantity has the larger error of both: what
+    chance makes smaller is no reason to choose it.
+    """
     rows = []
     for case in SETTINGS:
         row = found.get(case)
@@ -152,8 +156,21 @@ def settings(found):
             rows.append({"setting": case, "options": options, "lengths": lengths,
                          "minutes_per_depth": row["cost"] * depth_of(case),
                          "depths_for_tenth": depths * (errors.max() / 0.1)**2,
-                         "errors": {name: _off(row, found[BASE], what) for name, what in ERRORS_OF.items()}})
+                         "errors": {name: _error(row, found.get(changed_from(case)), found[BASE], what)
+                                    for name, what in ERRORS_OF.items()}})
     return rows
+
+
+def _error(row, known, base, what):
+    """Part by which a quantity of a setting, changed from the case `known`, is off that of the base; None where that is
+    not known."""
+    off = _off(row, base, what)
+    if not known or off is None:
+        return off
+    change = difference(row, known, what)
+    common = len(row["each"].keys() & known["each"].keys())
+    same = not generated.significant(change.value, change.standard_error, common)
+    return max(off, _off(known, base, what) or 0.0) if same else off
 
 
 def _off(row, base, what):

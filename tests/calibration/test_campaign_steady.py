@@ -275,12 +275,25 @@ def test_settings_are_compared_with_sixteen_discs_over_what_they_cost():
 
 def test_settings_to_choose_from_say_what_they_move_and_cost():
     base, eight, high = tables.settings(SETTINGS)
-    assert base["options"] == {"discs_per_depth": 16, "velocity": 8.0} and set(base["errors"].values()) == {0.0}
+    assert base["options"] == {"discs_per_depth": 16, "velocity": 8.0, "time_step_fraction": 0.9} and set(base["errors"].values()) == {0.0}
     assert eight["options"]["discs_per_depth"] == 8 and eight["minutes_per_depth"] == pytest.approx(0.1)
     assert eight["errors"] == pytest.approx({"specific_energy": 0.25, "wear": 0.0, "temperature": 0.1})
     assert eight["depths_for_tenth"] == pytest.approx(160) and high["lengths"] == {"window_height": 8.0}
     cold = tables.settings({**SETTINGS, "eight discs": a_setting(30.0, 4.0, math.nan, 20.0)})[1]
     assert cold["errors"]["temperature"] is None
+
+
+def test_a_setting_that_is_not_told_apart_from_another_has_the_larger_error_of_both():
+    def scattered(*forces):
+        each = {seed: {"force": Measured(force, 0.1), **{name: Measured(4.0, 0.1) for name in ("friction",
+                "temperature")}} for seed, force in enumerate(forces, 1)}
+        return {**a_setting(sum(forces) / 3, 4.0, 4.0, 20.0), "each": each}
+
+    base, eight = scattered(40.0, 41.0, 39.0), scattered(30.0, 31.0, 29.0)
+    for forces, same in (((41.0, 30.0, 42.0), True), ((38.0, 39.0, 37.0), False)):
+        found = {"base": base, "eight discs": eight, "eight discs, window 8 depths high": scattered(*forces)}
+        _, other, high = (row["errors"]["specific_energy"] for row in tables.settings(found))
+        assert other > 0.24 and (high == other) == same, forces
 
 
 @pytest.mark.parametrize("accuracy, of, setting, off, depths", [
@@ -303,12 +316,12 @@ def test_the_command_of_a_setting_has_its_lengths_over_the_depth():
     row = tables.settings(SETTINGS)[2]
     command, words = settings.shown(row, 40, 0.1, 0.2, 2e-3)
     assert command.endswith("--depth_of_cut 0.002 --tip_radius 0.0002 --discs_per_depth 8 --velocity 8 "
-                            "--window_height 0.016 --accuracy 0.2 --cut_length 0.16")
-    assert "off by 10 % beside sixteen discs, by 20 % for its length, some 40 depths of cut; 8 minutes" in words
+                            "--time_step_fraction 0.9 --window_height 0.016 --accuracy 0.2 --cut_length 0.16")
+    assert "off by 10 % beside sixteen discs at the same speed, by 20 % for its length, some 40 depths of cut; 8 minutes" in words
 
 
 @pytest.mark.parametrize("words, said", [
-    ([], ""), (["--accuracy", "0"], "accuracy = 0"), (["--of", "wear,colour"], "of = wear,colour"),
+    ([], ""), (["--of", "temperature", "--accuracy", "0.05"], ""), (["--accuracy", "0"], "accuracy = 0"), (["--of", "wear,colour"], "of = wear,colour"),
     (["--depth_of_cut", "-1"], "depth_of_cut = -1"), (["--depth_of_cut", "1e-5"], "depth_of_cut = 1e-05 m")])
 def test_settings_on_the_command_line(words, said, tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(settings, "MEASURED", tmp_path / "settings.json")
