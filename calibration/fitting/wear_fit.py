@@ -43,11 +43,20 @@ def read(file, brinell=BRINELL):
     """[{name: SI value}] of a CSV file's rows; errors as "name error". Raises ParameterError with column and line."""
     try:
         with open(file, newline="", encoding="utf-8-sig") as lines:
-            rows = list(csv.DictReader(lines, skipinitialspace=True))
+            reader = csv.DictReader(lines, skipinitialspace=True)
+            rows = [(row, reader.line_num) for row in reader]
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         raise ParameterError("file", str(file), f"a CSV file that can be read ({error})") from None
     require(rows, "file", str(file), "a CSV file with a header and at least one row")
-    return [_row(row, number, brinell) for number, row in enumerate(rows, 2)]
+    names = [_name_and_unit(head)[0] for head in reader.fieldnames]
+    twice = next((name for name in names if names.count(name) > 1), None)
+    require(not twice, f"column {twice}", names.count(twice), "there once")
+    return [_row(row, line, brinell) for row, line in rows]
+
+
+def _name_and_unit(head):
+    name, _, unit = (word.strip(" ]") for word in head.partition("["))
+    return name, unit
 
 
 def _row(row, line, brinell):
@@ -55,7 +64,7 @@ def _row(row, line, brinell):
     for head, text in row.items():
         if head is None or text is None:
             raise ParameterError(f"line {line}", len(row), "as long as the header")
-        name, _, unit = (word.strip(" ]") for word in head.partition("["))
+        name, unit = _name_and_unit(head)
         if name == "steel":
             found["steel"] = text.strip()
             continue
@@ -67,6 +76,8 @@ def _row(row, line, brinell):
             continue
         value = finite(f"{name} in line {line}", text, unit)
         require(value >= 0 or not name.endswith(" error"), f"{name} in line {line}", value, "at least 0", unit)
+        require(value > 0 or name != quantity or quantity == "temperature", f"{name} in line {line}", value,
+                "greater than 0", unit)
         if unit == "degC" and quantity == name:
             value += KELVIN
         found[name] = value * (brinell if unit == "HB" else UNITS[quantity][unit])

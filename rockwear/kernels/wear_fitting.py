@@ -7,6 +7,10 @@ from scipy.optimize import nnls
 from rockwear.kernels.checks import not_negative, positive, require
 
 
+ROUNDS = 4
+"""Fits one after the other, each with errors as parts of the depths of the one before."""
+
+
 @dataclass
 class LaboratoryTest:
     """Tests of blocks pressed and slid [Rojek 2003, 6.6], one a row, all (m,) arrays.
@@ -50,24 +54,29 @@ def misfit(model, test, error, parameters):
     freedom = len(model) - parameters
     if freedom < 1 or not np.all(error > 0):
         return np.nan
-    return float(np.sum(((test.depth - model) / (error * test.depth))**2) / freedom)
+    return float(np.sum(((test.depth - model) / (error * model))**2) / freedom)
 
 
 def fit_linear(columns, test, error):
     """Least squares for depth = sum k_i column_i, k_i >= 0, weighted by the (m,) relative errors, if known. -> Fit.
 
-    Uncertainty: of one test, its error; of several, the larger of what their errors and what their scatter say. Without
-    errors, tests count by their relative deviation, and only the scatter is known.
+    Errors are parts of the fitted depths: as parts of the measured ones they would let tests count most that happened
+    to wear least, and k would come out too low. Of one mode with equal errors k is the mean of the tests. Uncertainty:
+    of one test, its error; of several, the larger of what their errors and what their scatter say. Without errors,
+    tests count by their relative deviation, and only the scatter is known.
     """
     columns = np.column_stack(columns)
     count, unknown = columns.shape
     known = bool(np.all(error > 0))
-    weight = 1 / (test.depth * (error if known else 1.0))
-    matrix, right = columns * weight[:, None], test.depth * weight
-    scale = np.linalg.norm(matrix, axis=0)
-    require(count >= unknown and np.linalg.cond(matrix / scale) < 1e8, "tests", count,
-            f"at least {unknown}, at different pressure over hardness, to tell modes of different exponents apart")
-    k = nnls(matrix / scale, right)[0] / scale
+    depth = test.depth
+    for _ in range(ROUNDS):
+        weight = 1 / (depth * (error if known else 1.0))
+        matrix, right = columns * weight[:, None], test.depth * weight
+        scale = np.linalg.norm(matrix, axis=0)
+        require(count >= unknown and np.linalg.cond(matrix / scale) < 1e8, "tests", count,
+                f"at least {unknown}, at different pressure over hardness, to tell modes of different exponents apart")
+        k = nnls(matrix / scale, right)[0] / scale
+        depth = columns @ k
     chi2 = float(np.sum((right - matrix @ k)**2))
     freedom = count - unknown
     variance = np.diag(np.linalg.inv((matrix / scale).T @ (matrix / scale))) / scale**2
@@ -93,6 +102,8 @@ def fit_line(power_law, start, test, load):
         weight = 1 / error if known else np.ones(len(x))
         matrix = np.column_stack([x, np.ones(len(x))]) * weight[:, None]
         solution = np.linalg.lstsq(matrix, rate * weight, rcond=None)[0]
+        require(solution[0] > 0, "fitted exponent", float(solution[0]),
+                "greater than 0: these tests wear less the higher their pressure over hardness is")
         law = power_law(k=float(np.exp(solution[1])), exponent=float(solution[0]))
     rest = rate * weight - matrix @ solution
     scatter = (rest @ rest) / (len(x) - 2)

@@ -92,7 +92,7 @@ def test_own_steel_by_hardness_and_measured_friction(tmp_path):
 def test_command_line_leaves_numbers_and_a_figure(tmp_path, capsys):
     assert main([str(EXAMPLE), "--out", str(tmp_path / "out")]) == 0
     said = capsys.readouterr().out
-    assert "MET71  all tests: k = 0.0024713" in said and "the tests differ by" in said
+    assert "MET71  all tests: k = 0.0025151" in said and "the tests differ by" in said
     stored = json.loads((tmp_path / "out/wear_fit.json").read_text(encoding="utf-8"))
     assert np.shape(stored["steels"]["MET91"]["k_of_each_test"]) == (2,)
     assert (tmp_path / "out/wear_fit.png").stat().st_size > 1e4
@@ -105,14 +105,19 @@ def test_command_line_leaves_numbers_and_a_figure(tmp_path, capsys):
      "pressure in line 2 = x Pa: must be a number"),
     ("steel,pressure [Pa],distance [m],depth [mm],temperature [K]\nMET71,1e6,1,1,1400\n", "temperature = 1400 K"),
     ("steel,pressure [Pa],distance [m],depth [mm],temperature [K]\nX12,1e6,1,1,400\n", "steel = X12"),
-    ("steel,pressure [Pa],distance [m],depth [mm],temperature [K]\nMET71,1e6,1,-1,400\n", "depth = -0.001 m: must be"),
+    ("steel,pressure [Pa],distance [m],depth [mm],temperature [K]\nMET71,1e6,1,-1,400\n",
+     "depth in line 2 = -1 mm: must be greater than 0"),
+    ("steel,pressure [Pa],distance [m],depth [mm],temperature [K]\n\nMET71,1e6,0,1,400\n",
+     "distance in line 3 = 0 m: must be greater than 0"),
+    ("pressure [Pa],distance [m],depth [mm],depth [um],hardness [Pa]\n1e6,1,1,1,5e9\n", "column depth = 2: must be there"),
+    ("force [N],force [N],area [m2],distance [m],depth [mm],hardness [Pa]\n885,1,1,1,1,5e9\n", "column force = 2"),
     ("steel,pressure [Pa],distance [m],depth [mm],temperature [K],depth error [mm]\nMET71,1e6,1,1,400,-0.1\n",
      "depth error in line 2 = -0.1 mm: must be at least 0"),
     ("steel,force [N],distance [m],depth [mm],temperature [K]\nMET71,1e6,1,1,400\n", "area = nothing"),
     ("pressure [Pa],distance [m],depth [mm],hardness [Pa],force error [N]\n1e6,1,1,5e9,3\n",
      "force error = 3 N: must be given with force"),
     ("pressure [Pa],force [N],distance [m],depth [mm],hardness [Pa]\n1e6,0,1,1,5e9\n",
-     "force = 0 N: must be greater than 0"),
+     "force in line 2 = 0 N: must be greater than 0"),
     ("steel,pressure [Pa],depth [mm],temperature [K]\nMET71,1e6,1,400\n", "distance = nothing")])
 def test_bad_files_end_in_one_line(tmp_path, capsys, text, words):
     file = tmp_path / "bad.csv"
@@ -128,6 +133,14 @@ def test_bad_files_end_in_one_line(tmp_path, capsys, text, words):
     (["--modes", "1/1/1"], "modes = 1/1/1: must be left out with wear_law = pressure")])
 def test_options_of_another_law_are_refused(capsys, option, words):
     assert main(option) == 2 and words in capsys.readouterr().err
+
+
+def test_an_exponent_that_cannot_be_is_said_to_be_fitted(tmp_path, capsys):
+    file = tmp_path / "odd.csv"
+    file.write_text("pressure [MPa],distance [m],depth [mm],hardness [Pa]\n" + "".join(
+        f"{p},100,{w},5e9\n" for p, w in ((1, 3), (2, 2), (4, 1))), encoding="utf-8")
+    assert main([str(file), "--wear_law", "power", "--exponent", "fit"]) == 2
+    assert "fitted exponent = -0.79" in capsys.readouterr().err
 
 
 def test_a_file_that_is_not_there(capsys):

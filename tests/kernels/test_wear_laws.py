@@ -139,6 +139,18 @@ def test_uncertainty_of_one_row_is_its_error_and_of_many_their_scatter():
     assert found.misfit > 50 and found.uncertainty[0] > 0.03 * K
 
 
+@pytest.mark.parametrize("error", [0.0, 0.2])
+def test_k_is_right_in_the_mean_however_much_tests_scatter(error):
+    law, rng, ks = PressureArchard(k=K), np.random.default_rng(7), []
+    for _ in range(500):
+        noise = 0.2 * rng.standard_normal(6)
+        fitted, found = law.fit(laboratory(law, p=np.geomspace(5e6, 80e6, 6), s=np.full(6, 100.0), error=error,
+                                           noise=noise))
+        assert fitted.k == pytest.approx(K * (1 + noise.mean()), rel=1e-12)
+        ks.append(fitted.k)
+    assert np.mean(ks) == pytest.approx(K, rel=0.01)
+
+
 @pytest.mark.parametrize("call, name", [
     (lambda: law_of("pressure", wear_coefficient=-1), "k"), (lambda: law_of("power", mu=0), "mu"),
     (lambda: law_of("power", wear_exponent=0), "exponent"), (lambda: law_of("power", wear_exponent=21), "exponent"),
