@@ -5,7 +5,8 @@
 A setting (discs in the depth of cut, speed, window) is off by what `campaigns.steady_cut` found it to move, beside
 sixteen discs at 8 m/s, at which all were cut, and one cut by its length: its error falls as one over the root of that. Both together make the
 accuracy, a part of the mean. How far sixteen discs are off themselves is not known: nothing finer was cut. Prints the
-command of the cut, which ends by itself when its mean force is known well enough, and what it costs.
+command of the cut, which ends by itself when its mean force is known well enough and was at two thirds of its way, and
+what it costs.
 """
 import json
 import math
@@ -15,13 +16,12 @@ from pathlib import Path
 from calibration import command
 from rockwear.kernels.checks import ParameterError, require
 from rockwear.kernels.parameter import Group, Parameter, number, text
+from rockwear.kernels.steady_record import HELD, LONG_ENOUGH
 from rockwear.run import parameters
 
 MEASURED = Path(__file__).parent / "results" / "steady_settings.json"
 """What campaigns.steady_cut writes."""
 QUANTITIES = "specific_energy", "wear", "temperature"
-LEAST_DEPTHS = 20
-"""Depths of cut below which no cut has means."""
 LONGEST = 2
 """Times as long as expected, at which a cut ends that does not know its mean force by then."""
 TIP = 0.1
@@ -47,7 +47,8 @@ def choose(rows, *, accuracy, quantities):
             least = min(least, off)
             if off < accuracy:
                 of_length = math.sqrt(accuracy**2 - off**2)
-                depths = max(LEAST_DEPTHS, math.ceil(row["depths_for_tenth"] * (0.1 / of_length)**2))
+                needed = max(LONG_ENOUGH, row["depths_for_tenth"] * (0.1 / of_length)**2)
+                depths = math.ceil(needed / HELD)
                 found.append((depths * row["minutes_per_depth"], depths, off, of_length, row))
     require(found, "accuracy", accuracy, f"above {least:.2g}, which the best setting that was measured reaches in "
             f"{', '.join(quantities)}")

@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 from scipy.signal import find_peaks
+from scipy.special import stdtrit
 
 from rockwear.kernels.checks import positive, require
 
@@ -32,6 +33,10 @@ PROMINENCE = 1 / 3
 """Part of a typical peak by which the force must drop on both sides of a peak."""
 LONG_ENOUGH, ENOUGH_CHIPS = 20, 10
 """Depths of cut and chips that a steady record must have."""
+
+
+HELD = 2 / 3
+"""Part of a record at which its mean must have been known, too, for a cut to end: see `is_known`."""
 
 
 class Measured(NamedTuple):
@@ -78,6 +83,10 @@ def mean(distance, total, begin=-math.inf):
     and the shortest blocks are taken that satisfy B^3 > 2 n (s_B / s_1)^4 (Lee and others 2011): long against the
     correlation, and still as many as can be. Where no blocks do, MIN_BLOCKS of them serve if they are longer than two
     correlation lengths; if they are not, the standard error is nan. It is nan as well for fewer than MIN_BLOCKS rows.
+
+    Few blocks do not know their scatter well. The error is larger by their Student's t over that of many, so that the
+    mean is within twice the error in 95 % of the cases: 1.2 times with eight blocks. (In 2000 made-up records, AR(1), it
+    is in 95, 92, 91 and 83 % of those of 200, 40, 30 and 20 correlation lengths.)
     """
     begin = max(begin, distance[0]) if len(distance) else begin
     rows = np.count_nonzero(np.unique(distance) > begin)
@@ -92,10 +101,11 @@ def mean(distance, total, begin=-math.inf):
         variance = means.var(ddof=1) / len(means)
         first = variance if first is None else first
         correlation = variance / first if first else 0.0
+        error = math.sqrt(variance) * stdtrit(len(means) - 1, 0.975) / stdtrit(math.inf, 0.975)
         if length**3 > 2 * finest * correlation**2:
-            return Measured(value, math.sqrt(variance))
+            return Measured(value, error)
         if len(means) == MIN_BLOCKS:
-            return Measured(value, math.sqrt(variance) if length > 2 * correlation else math.nan)
+            return Measured(value, error if length > 2 * correlation else math.nan)
         means, length = means.reshape(-1, 2).mean(axis=1), 2 * length
 
 
@@ -215,6 +225,19 @@ def uncertainty(found):
     """Standard error of the mean cutting force over it, of what `steady_results` found; inf of too short a record."""
     force, error = (found[name][0] for name in ("mean_cutting_force", "mean_cutting_force_standard_error"))
     return error / force if found["long_enough"][0] and error < math.inf and force > 0 else math.inf
+
+
+def is_known(accuracy, *, distance, depth, **columns):
+    """Whether a cut may end: its mean cutting force is known to `accuracy`, a part of it, and was when the record had
+    HELD of its present length. distance, depth, columns: of `steady_results`.
+
+    A cut that ends as soon as its error happens to look small ends at lucky moments. Of 300 made-up records (AR(1),
+    scatter 0.6, correlation length one depth, asked every two depths for 0.1) that end so the mean is off by 0.13, rms,
+    and by more than 0.2 in 11 % of them; with this rule by 0.10 and in 4 %, and they are half as long again.
+    """
+    rows = np.searchsorted(distance, HELD * distance[-1]) if len(distance) else 0
+    return all(uncertainty(steady_results(distance=distance[:end], depth=depth, **{
+        name: column[:end] for name, column in columns.items()})) <= accuracy for end in (len(distance), rows))
 
 
 def quotient(first, second):

@@ -15,7 +15,7 @@ from rockwear.kernels.parameter import Group, Parameter, Presets, above_zero, ch
 from rockwear.kernels.polygon import reach
 from rockwear.kernels.rigid_motion import Straight
 from rockwear.kernels.steady_record import (
-    CELL, ENOUGH_CHIPS, LONG_ENOUGH, steady_results, uncertainty, with_error)
+    CELL, ENOUGH_CHIPS, LONG_ENOUGH, is_known, steady_results, uncertainty, with_error)
 from rockwear.model.rock_mass import SLABS, RockMass
 from rockwear.scenes import parameters, parts
 from rockwear.scenes.cut import Cut
@@ -55,7 +55,8 @@ STEADY = Group("motion", (
     *(p for p in parameters.CUT_MOTION if p.name != "approach"),
     Parameter("cut_length", 0.1, "m", above_zero, "way of the tool"),
     Parameter("accuracy", 0.0, "", zero_or(1e-3, 1), "standard error of the mean cutting force over it: the cut ends "
-              "where it is as small, in a record that is long enough, or after cut_length; 0: after cut_length"),
+              "where it is as small, and was in two thirds of a record that is long enough, or after cut_length; 0: "
+              "after cut_length"),
     Parameter("ramp_length", 5e-3, "m", number(0), "way on which the tool comes to its velocity, from a groove that "
               "fits it"),
     Parameter("free_chips", "stay", "", choice("stay", "leave"), "what chips do that nothing touches: a fast tool "
@@ -178,12 +179,12 @@ class SteadyCut(Programme):
         was asked last."""
         asked = CELL * self.scene.depth_of_cut
         return self.accuracy > 0 and self.way // asked > before // asked and (
-            uncertainty(self._forces(self.scene.recorder.columns())) <= self.accuracy)
+            is_known(self.accuracy, **self._forces(self.scene.recorder.columns())))
 
     def _forces(self, columns):
-        return steady_results(distance=columns["distance"], cutting=columns["cutting_force"],
-                              thrust=columns["thrust_force"], friction_work=columns["tool_friction"],
-                              depth=self.scene.depth_of_cut)
+        """What steady_results takes."""
+        return dict(distance=columns["distance"], cutting=columns["cutting_force"], thrust=columns["thrust_force"],
+                    friction_work=columns["tool_friction"], depth=self.scene.depth_of_cut)
 
     def log(self):
         return {"distance": (self.distance, "m")}
@@ -198,7 +199,7 @@ class SteadyCut(Programme):
     def results(self, columns):
         found = {}
         if columns:
-            found = self._forces(columns)
+            found = steady_results(**self._forces(columns))
             begin = found["transient"][0]
             (x, height), chips = (part[part[:, 0] > begin].T for part in self._record())
             found.update(groove_results(x=x, height=height, chip=found["peak_spacing"][0]))
@@ -212,7 +213,7 @@ class SteadyCut(Programme):
         found = self.window.warnings(cracks)
         if not cracks:
             found.append("no bond broke: the tool was pressed into the rock, and cut nothing")
-        forces = self._forces(columns) if columns else {}
+        forces = steady_results(**self._forces(columns)) if columns else {}
         if forces and not forces["long_enough"][0]:
             found.append(f"means are of {forces['steady_length'][0] / self.scene.depth_of_cut:.1f} depths of cut and "
                          f"{forces['peaks'][0]} chips after the transient: a cut_length for {LONG_ENOUGH} and "
