@@ -1,10 +1,13 @@
 """What a peer is given is what YADE has; what it gives back is compared as it should be."""
+import json
+import math
 import re
+import sys
 
 import numpy as np
 import pytest
 
-from calibration.benchmarks.peers import STRAIN, lammps
+from calibration.benchmarks.peers import STRAIN, PeerFailed, kratos, lammps
 from calibration.benchmarks.peers import __main__ as peers
 from tests.running import ROOT, run_script
 
@@ -18,7 +21,9 @@ def folder(tmp_path_factory):
     out = tmp_path_factory.mktemp("peers")
     done = run_script(ROOT / "calibration/benchmarks/peers/cut.py", *map(str, SMALL), "--out", str(out))
     assert done.code == 0, done.stderr
-    lammps.write(dict(np.load(out / "model.npz")), out, lammps.CUT, sample=10, timed=60, rest=40)
+    model = dict(np.load(out / "model.npz"))
+    lammps.write(model, out, lammps.CUT, sample=10, timed=60, rest=40)
+    kratos.write(model, out, steps=100, sample=10, timed=60)
     return out
 
 
@@ -69,6 +74,59 @@ def test_the_force_of_a_strained_bond_is_exact(folder):
     assert np.load(folder / "stretch.npy") == pytest.approx(exact, abs=20e9 * 1e-17)
 
 
+@pytest.mark.parametrize(("kn", "kt", "nu"), [(20e9, 20e9, 0), (20e9, 8e9, 0.75), (5e9, 1e9, 8 / 9)])
+def test_kratos_has_the_springs_of_the_bonds(kn, kt, nu):
+    E, found = kratos.elastic_constants(kn, kt, RADIUS)
+    assert found == pytest.approx(nu)
+    # As DEM_KDEM_CL.cpp has it: equivalent radius and moduli of two equal discs.
+    modulus, shear = E / (2 * (1 - nu**2)), E / (2 * (1 + nu)) / (2 * (2 - nu))
+    assert 1.432 * modulus * math.pi * 0.31225 * RADIUS / 2 == pytest.approx(kn)
+    assert 4 * shear * kn / modulus == pytest.approx(kt)
+
+
+def test_kratos_has_discs_bonds_and_tool_of_the_model(folder):
+    model, arrays = np.load(folder / "model.npz"), np.load(folder / "kratos.npz")
+    job = json.loads((folder / "kratos.json").read_text(encoding="utf-8"))
+    for name in ("positions", "radii", "fixed", "pairs", "tool_positions", "tool_radii"):
+        assert (arrays[name] == model[name]).all()
+    phi = math.atan(job["of_rock"]["CONTACT_INTERNAL_FRICC"])
+    assert 2 * arrays["tau"] * math.cos(phi) / (1 + math.sin(phi)) == pytest.approx(model["Rn"], rel=1e-9)
+    assert (arrays["tau"] > 1e5 * model["Rn"]).all()
+    assert job["disc"]["PARTICLE_DENSITY"] * math.pi * RADIUS**2 == pytest.approx(model["masses"], rel=1e-12)
+    assert job["settings"]["MaxTimeStep"] == model["time_step"] and job["tool_velocity"] == 4
+    springs = [[job[of][name] for name in ("K_NORMAL", "K_TANGENTIAL", "STATIC_FRICTION", "DYNAMIC_FRICTION")]
+               for of in ("of_rock", "of_tool")]
+    assert springs == [[20e9, 8e9, 0.839, 0.839], [90e9, 90e9, 0.3, 0.3]]
+    assert [job[name] for name in ("steps", "sample", "timed")] == [100, 10, 60]
+
+
+def test_kratos_refuses_bonds_with_springs_of_their_own(folder, tmp_path):
+    model = dict(np.load(folder / "model.npz"))
+    with pytest.raises(PeerFailed, match="one radius, mass, kn and kt"):
+        kratos.write({**model, "kn": model["kn"] * np.linspace(1, 2, len(model["kn"]))}, tmp_path)
+
+
+def test_a_script_of_kratos_that_fails_is_one_line(tmp_path):
+    """This Python has no Kratos."""
+    (tmp_path / "bin").mkdir()
+    (tmp_path / "bin/python").symlink_to(sys.executable)
+    with pytest.raises(PeerFailed, match="^Kratos ended with 1: ModuleNotFoundError: No module named 'Kratos.*'$"):
+        kratos.run(tmp_path, tmp_path)
+
+
+def test_kratos_is_timed_over_the_first_steps_and_strained_without_a_tool(folder, tmp_path, monkeypatch):
+    model = dict(np.load(folder / "model.npz"))
+    monkeypatch.setattr(kratos, "run", lambda environment, folder: {"rows": [[0, 1, 2, 3]], "seconds": 4e-3,
+                                                                    "forces": [5, 6]})
+    rows, seconds = kratos.cut(tmp_path, model, tmp_path, steps=1100, sample=100)
+    assert rows.tolist() == [[0, 1, 2, 3]] and seconds == 4e-3
+    assert json.loads((tmp_path / "kratos.json").read_text(encoding="utf-8"))["timed"] == 1000
+    assert kratos.stretched(tmp_path, model, tmp_path, STRAIN).tolist() == [5, 6]
+    job = json.loads((tmp_path / "kratos.json").read_text(encoding="utf-8"))
+    assert job["strain"] == STRAIN.tolist() and job["settings"]["ContactMeshOption"]
+    assert len(np.load(tmp_path / "kratos.npz")["tool_radii"]) == 0
+
+
 def test_agreement_ends_where_the_forces_part():
     ours = np.array([[0, 0, 0, 9], [10, -100, 10, 9], [20, -200, 10, 8], [30, -200, 10, 7], [40, 0, 0, 3]], float)
     theirs = ours + [[0, 0, 0, 0], [0, 0.1, 0, 0], [0, 1, 0, 0], [0, 20, 0, -1], [0, 0, 0, -2]]
@@ -78,9 +136,10 @@ def test_agreement_ends_where_the_forces_part():
     assert found["mean_force"] == pytest.approx([100, 95.78])
 
 
-def test_a_peer_that_cannot_be_installed_is_one_line(tmp_path, monkeypatch, capsys):
+@pytest.mark.parametrize("peer", peers.PEERS)
+def test_a_peer_that_cannot_be_installed_is_one_line(tmp_path, monkeypatch, capsys, peer):
     monkeypatch.setattr(peers.sys, "executable", str(tmp_path / "nowhere"))
-    assert peers.main(["lammps", str(tmp_path)]) == 1
+    assert peers.main([peer, str(tmp_path)]) == 1
     said = capsys.readouterr().err
     assert said.startswith("peers: ") and said.count("\n") == 1
 

