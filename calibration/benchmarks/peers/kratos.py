@@ -28,9 +28,10 @@ STIFFNESS = 1.432 * 0.31225
 SHEAR = 1e6
 """Shear strength of bonds, in tensile strengths."""
 SKIN = 0.3
-"""Of Kratos's list of neighbours, in radii."""
-SEARCH = 10
-"""Steps between two searches for neighbours."""
+"""Of the search for neighbours, in radii: bonds that reach further are lost."""
+SEARCH = 1
+"""Steps between two searches: new neighbours that do not touch are dropped, so that later searches find contacts late
+(with 10, cuts part at step 920 and not at 1320; with 50, all bonds break)."""
 
 
 def elastic_constants(kn, kt, radius):
