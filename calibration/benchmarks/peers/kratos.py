@@ -31,7 +31,7 @@ SKIN = 0.3
 """Of the search for neighbours, in radii: bonds that reach further are lost."""
 SEARCH = 1
 """Steps between two searches: new neighbours that do not touch are dropped, so that later searches find contacts late
-(with 10, cuts part at step 920 and not at 1320; with 50, all bonds break)."""
+(with 10, cuts part at step 920 and not at 1320; with 50, nearly all bonds break)."""
 
 
 def elastic_constants(kn, kt, radius):
