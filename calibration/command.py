@@ -7,7 +7,10 @@ from rockwear.kernels.checks import ParameterError
 
 
 class Parser(argparse.ArgumentParser):
-    """argparse's parser, which says what is wrong in one line."""
+    """argparse's parser, which says what is wrong in one line and takes no part of an option for the whole."""
+
+    def __init__(self, **options):
+        super().__init__(allow_abbrev=False, **options)
 
     def error(self, message):
         print(f"error: {message} (--help says more)", file=sys.stderr)

@@ -3,10 +3,10 @@
     python3 -m calibration.settings --accuracy 0.3 [--depth_of_cut 5e-3] [--of specific_energy,wear,temperature]
 
 A setting (discs in the depth of cut, speed, window) is off by what `campaigns.steady_cut` found it to move, beside
-sixteen discs at 8 m/s, at which all were cut, and one cut by its length: its error falls as one over the root of that. Both together make the
-accuracy, a part of the mean. How far sixteen discs are off themselves is not known: nothing finer was cut. Prints the
-command of the cut, which ends by itself when its mean force is known well enough and was at two thirds of its way, and
-what it costs.
+sixteen discs at 8 m/s, at which all were cut, and one cut by its length: its error falls as one over the root of
+that. Both together make the accuracy, a part of the mean. How far sixteen discs are off themselves is not known:
+nothing finer was cut. Prints the command of the cut, which ends by itself when its mean force is known well enough
+and was at two thirds of its way, and what it costs.
 """
 import json
 import math
@@ -64,8 +64,9 @@ def shown(row, depths, off, of_length, depth):
     words = " ".join(f"--{name} {value:.6g}" if isinstance(value, (int, float)) else f"--{name} {value}"
                      for name, value in values.items())
     return [f"yade -n -x -j1 yade_scripts/steady_cut.py {words}",
-            f"{row['setting']}: off by {100 * off:.0f} % beside sixteen discs at the same speed, by {100 * of_length:.0f} % for its "
-            f"length, some {depths} depths of cut; {depths * row['minutes_per_depth']:.0f} minutes"]
+            f"{row['setting']}: off by {100 * off:.0f} % beside sixteen discs at the same speed, by "
+            f"{100 * of_length:.0f} % for its length, some {depths} depths of cut; "
+            f"{depths * row['minutes_per_depth']:.0f} minutes"]
 
 
 def main(words):

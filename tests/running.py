@@ -1,6 +1,7 @@
 """Scenes are run as a user runs them: YADE in a process of its own, judged by exit code, words and numbers."""
 import base64
 import json
+import math
 import os
 import subprocess
 import time
@@ -77,7 +78,8 @@ def assert_refused(code, said, words):
 
 def value(run, name):
     """A result of a run."""
-    return run.summary["results"][name]["value"]
+    found = run.summary["results"][name]["value"]
+    return math.nan if found is None else found
 
 
 def last_snapshot(out):

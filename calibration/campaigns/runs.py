@@ -208,7 +208,7 @@ def placement(words):
 
     Ends the program with exit code 2 where they cannot be used.
     """
-    parser = Parser(add_help=False, allow_abbrev=False, argument_default=argparse.SUPPRESS)
+    parser = Parser(add_help=False, argument_default=argparse.SUPPRESS)
     add_placement(parser)
     found, others = parser.parse_known_args(words)
     try:

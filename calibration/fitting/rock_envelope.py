@@ -25,6 +25,7 @@ from rockwear.kernels.checks import ParameterError, require
 from rockwear.kernels.strength_envelope import Estimate, HoekBrown, MohrCoulomb
 from rockwear.model import rock_file
 from rockwear.report import palette, plots
+from rockwear.run.parameters import file_name
 from rockwear.scenes.parameters import OF_ROCK
 
 MPA = 1e6
@@ -114,7 +115,7 @@ def table(ours, reference):
 def main(words):
     """-> exit code."""
     parser = Parser(prog="python3 -m calibration.fitting.rock_envelope", description=__doc__,
-                    formatter_class=argparse.RawDescriptionHelpFormatter, allow_abbrev=False)
+                    formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("rock", metavar="NAME|FILE")
     parser.add_argument("--points", metavar="FILE.csv")
     parser.add_argument("--out", type=Path, metavar="DIR", default=Path())
@@ -123,13 +124,17 @@ def main(words):
         rock = rock_file.read(rock_file.find(given.rock), OF_ROCK)
         tests = tuple(strength_table.read(given.points, "points")) if given.points else ()
         found = compared(rock, tests)
-        written = made(given.out) / f"{rock.name}_envelope.png"
+        written = made(given.out) / f"{file_name(rock.name)}_envelope.png"
     except ParameterError as error:
         print(f"error: {error}", file=sys.stderr)
         return 2
-    with matplotlib.rc_context(plots.STYLE):
-        draw(*found).savefig(written)
-    generated.record(written)
+    try:
+        with matplotlib.rc_context(plots.STYLE):
+            draw(*found).savefig(written)
+        generated.record(written)
+    except OSError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 1
     print("\n".join(table(*found[1:])))
     return 0
 

@@ -177,8 +177,8 @@ def main(words):
         start = start_of(values)
         check_jobs(values["jobs"])
         require(values["out"], "out", "nothing", "given: the folder of the results")
-        folder = made(Path(values["out"]))
         require_dask()
+        folder = made(Path(values["out"]))
     except ParameterError as error:
         print(f"error: {error}", file=sys.stderr)
         return 2

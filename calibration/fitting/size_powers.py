@@ -120,7 +120,9 @@ def changes(found, factor):
             values, here = found[test, ratio], found[test, 1.0]
             both = np.isfinite(values) & np.isfinite(here)
             change, error = generated.mean_and_error(values[both] / here[both] - 1.0)
-            rows.append((words, ratio, *generated.mean_and_error(values[both]), change, error, abs(change) <= allowed))
+            # What packings do not tell is not said to stay.
+            kept = ratio == 1.0 or (abs(change) <= allowed and error <= allowed)
+            rows.append((words, ratio, *generated.mean_and_error(values[both]), change, error, kept))
     return rows
 
 

@@ -133,7 +133,7 @@ def _curve(fit):
 def main(words):
     """Measure, fit, write. -> exit code."""
     parser = Parser(prog="python3 -m calibration.laboratory.envelope", description=__doc__,
-                    formatter_class=argparse.RawDescriptionHelpFormatter, allow_abbrev=False)
+                    formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=Path, metavar="DIR")
     for name, default in (("confinements", CONFINEMENTS), ("seeds", SEEDS), ("points", "")):
         parser.add_argument(f"--{name}", default=default)

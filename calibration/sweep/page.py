@@ -63,7 +63,8 @@ def _number(run, name):
 
 def _line(row, run, swept, units, results):
     """Cells of a row of the table."""
-    values = [page.quantity(row.values[name], units[name]) if isinstance(row.values[name], float)
+    # In the units of --help: a parameter in K may be a difference, which no offset is added to.
+    values = [f"{page.number(row.values[name])} {units[name]}".strip() if isinstance(row.values[name], float)
               else row.values[name] for name in swept]
     if run is None:
         return [row.name, *values, *[""] * len(results), "failed" if row.failure else "not done"]

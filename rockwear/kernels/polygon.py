@@ -5,6 +5,7 @@ meet except neighbours at their common vertex.
 """
 import csv
 import math
+import re
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -14,6 +15,7 @@ from rockwear.kernels.checks import ParameterError, finite, not_negative, positi
 ARC_CHORD_ERROR = 1e-3  # sagitta of the chords that replace an arc, as a fraction of its radius
 CORNER = math.radians(10)  # a vertex at which the direction changes by more is a corner
 MAX_VERTICES = 4000  # of a file: the test for simple polygons compares all pairs of edges
+OTHER_UNITS = {"mm", "cm", "um", "µm", "in", "inch", "ft"}  # that the head of a file may not name
 CHUNK = 2_000_000  # point-edge pairs processed together: some 100 MB of temporaries
 
 
@@ -205,8 +207,9 @@ def tooth(*, height, width, rake, clearance, tip_radius, wear_flat=0.0):
 def read_outline(path):
     """Polygon (k, 2) in m from a CSV file of x, y rows, counter-clockwise whatever the file's order.
 
-    One header line is allowed; blank lines and lines that begin with # are skipped. Raises ParameterError (outline)
-    for a file that cannot be read, a row that is not two numbers, more than MAX_VERTICES, and as check_polygon.
+    One header line is allowed, of words without numbers and of no other unit than m; blank lines and lines that begin
+    with # are skipped. Raises ParameterError (outline) for a file that cannot be read, a row that is not two numbers,
+    more than MAX_VERTICES, and as check_polygon.
     """
     try:
         with open(path, newline="", encoding="utf-8-sig") as stream:
@@ -219,7 +222,8 @@ def read_outline(path):
         try:
             x, y = map(float, row)
         except ValueError:
-            if place == 0:
+            if place == 0 and not any(re.match(r"\s*[-+.\d]", cell) for cell in row):
+                _check_header(path, row)
                 continue
             raise ParameterError("outline", path, f"two numbers a row, unlike line {line}: {','.join(row)}") from None
         vertices.append((x, y))
@@ -228,6 +232,11 @@ def read_outline(path):
         return check_polygon(np.reshape(vertices, (-1, 2)), "outline")
     except ParameterError as error:
         raise ParameterError("outline", f"{path}, {error.value}", error.rule, error.unit) from None
+
+
+def _check_header(path, row):
+    other = [word for cell in row for word in re.findall("[a-zµ]+", cell.lower()) if word in OTHER_UNITS]
+    require(not other, "outline", f"{path}, {','.join(row)}", "in m")
 
 
 def tip(vertices):

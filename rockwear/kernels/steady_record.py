@@ -85,8 +85,8 @@ def mean(distance, total, begin=-math.inf):
     correlation lengths; if they are not, the standard error is nan. It is nan as well for fewer than MIN_BLOCKS rows.
 
     Few blocks do not know their scatter well. The error is larger by their Student's t over that of many, so that the
-    mean is within twice the error in 95 % of the cases: 1.2 times with eight blocks. (In 2000 made-up records, AR(1), it
-    is in 95, 92, 91 and 83 % of those of 200, 40, 30 and 20 correlation lengths.)
+    mean is within twice the error in 95 % of the cases: 1.2 times with eight blocks. (In 2000 made-up records, AR(1),
+    it is in 95, 92, 91 and 83 % of those of 200, 40, 30 and 20 correlation lengths.)
     """
     begin = max(begin, distance[0]) if len(distance) else begin
     rows = np.count_nonzero(np.unique(distance) > begin)

@@ -104,6 +104,8 @@ def hoek_brown(sigma3, sigma1, tensile_strength=None):
     def misfit(p):
         return np.concatenate([_hoek_brown(*p, x) - y, _tension(*p) - pulled])
 
+    require(bool(np.isfinite(misfit((slope / strength, strength))).all()), "sigma3", float(sigma3.min()),
+            "above the tension at which the curve of the other points begins", "Pa")
     found = least_squares(misfit, (slope / strength, strength), bounds=((1e-6, 1e-9), np.inf), x_scale="jac",
                           xtol=1e-14, ftol=1e-14, gtol=1e-14)
     if not found.success or found.active_mask.any():

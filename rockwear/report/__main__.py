@@ -16,5 +16,7 @@ if len(sys.argv) != 2 or sys.argv[1].startswith("-"):
     sys.exit(2)
 try:
     print(write(sys.argv[1]))
-except FileNotFoundError as error:
-    sys.exit(f"error: {error.filename} is missing: not the folder of a run that has ended")
+except (OSError, ValueError) as error:
+    print(f"error: folder = {sys.argv[1]}: must be that of a run that has ended ({str(error).splitlines()[0]})",
+          file=sys.stderr)
+    sys.exit(2)

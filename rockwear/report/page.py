@@ -83,12 +83,12 @@ def quantity(value, unit):
 def with_error(value, error, unit):
     """A mean and its standard error, rounded to two digits of the error; the mean alone where the error is not known:
     with_error(123.4e3, 5.67e3, "N/m") is "123.4 ± 5.7 kN/m"."""
-    shown, factor, _ = shown_unit(unit, value)
+    shown, factor, added = shown_unit(unit, value)
     error = abs(factor) * error
     if not (math.isfinite(value) and math.isfinite(error) and error > 0):
         return quantity(value, unit)
     places = max(0, 1 - math.floor(math.log10(error)))
-    return f"{factor * value:.{places}f} ± {error:.{places}f} {shown}".strip()
+    return f"{factor * value + added:.{places}f} ± {error:.{places}f} {shown}".strip()
 
 
 def percent(part, whole):

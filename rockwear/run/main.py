@@ -326,7 +326,7 @@ class Run:
             "peak_memory": {"value": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024, "unit": "bytes"},
         }
         with replacing(self.folder / "summary.json") as file:
-            file.write(json.dumps(summary, indent=1, allow_nan=True).encode())
+            file.write(json.dumps(summary, indent=1, allow_nan=False).encode())
 
 
 def resident_memory():
@@ -335,4 +335,6 @@ def resident_memory():
 
 
 def _plain(value):
-    return value.item() if isinstance(value, np.generic) else value
+    """The value for JSON, which has no number for one that is not finite."""
+    value = value.item() if isinstance(value, np.generic) else value
+    return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -195,10 +195,11 @@ def batch_row():
 
 def row_names(rows):
     """{number of the line: name for a folder} of a table's rows."""
-    return {number: _folder_name(row.get("description") or f"row {number}") for number, row in rows.items()}
+    return {number: file_name(row.get("description") or f"row {number}") for number, row in rows.items()}
 
 
-def _folder_name(words):
+def file_name(words):
+    """The words as the name of a file or folder: what may not be in one as _."""
     return "".join(c if c.isalnum() or c in "-_.=," else "_" for c in words)
 
 

@@ -275,7 +275,8 @@ def test_settings_are_compared_with_sixteen_discs_over_what_they_cost():
 
 def test_settings_to_choose_from_say_what_they_move_and_cost():
     base, eight, high = tables.settings(SETTINGS)
-    assert base["options"] == {"discs_per_depth": 16, "velocity": 8.0, "time_step_fraction": 0.9} and set(base["errors"].values()) == {0.0}
+    assert base["options"] == {"discs_per_depth": 16, "velocity": 8.0, "time_step_fraction": 0.9}
+    assert set(base["errors"].values()) == {0.0}
     assert eight["options"]["discs_per_depth"] == 8 and eight["minutes_per_depth"] == pytest.approx(0.1)
     assert eight["errors"] == pytest.approx({"specific_energy": 0.25, "wear": 0.0, "temperature": 0.1})
     assert eight["depths_for_tenth"] == pytest.approx(160) and high["lengths"] == {"window_height": 8.0}
@@ -317,11 +318,13 @@ def test_the_command_of_a_setting_has_its_lengths_over_the_depth():
     command, words = settings.shown(row, 40, 0.1, 0.2, 2e-3)
     assert command.endswith("--depth_of_cut 0.002 --tip_radius 0.0002 --discs_per_depth 8 --velocity 8 "
                             "--time_step_fraction 0.9 --window_height 0.016 --accuracy 0.2 --cut_length 0.16")
-    assert "off by 10 % beside sixteen discs at the same speed, by 20 % for its length, some 40 depths of cut; 8 minutes" in words
+    assert ("off by 10 % beside sixteen discs at the same speed, by 20 % for its length, some 40 depths of cut; "
+            "8 minutes" in words)
 
 
 @pytest.mark.parametrize("words, said", [
-    ([], ""), (["--of", "temperature", "--accuracy", "0.05"], ""), (["--accuracy", "0"], "accuracy = 0"), (["--of", "wear,colour"], "of = wear,colour"),
+    ([], ""), (["--of", "temperature", "--accuracy", "0.05"], ""), (["--accuracy", "0"], "accuracy = 0"),
+    (["--of", "wear,colour"], "of = wear,colour"),
     (["--depth_of_cut", "-1"], "depth_of_cut = -1"), (["--depth_of_cut", "1e-5"], "depth_of_cut = 1e-05 m")])
 def test_settings_on_the_command_line(words, said, tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(settings, "MEASURED", tmp_path / "settings.json")

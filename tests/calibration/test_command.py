@@ -12,12 +12,13 @@ import pytest
 from calibration.campaigns.runs import Runs
 from tests.running import ROOT
 
-OF_YADE = re.compile(r"^(?:from yade|import yade|from rockwear\.run\.main)|parameters\.read\(.*sys\.argv", re.MULTILINE)
+OTHER = re.compile(r"^(?:from yade|import yade|import Kratos|from rockwear\.run\.main)|parameters\.read\(.*sys\.argv",
+                   re.MULTILINE)
 COMMANDS = sorted(".".join(file.relative_to(ROOT).with_suffix("").parts).removesuffix(".__main__")
                   for file in (ROOT / "calibration").rglob("*.py")
                   if '\nif __name__ == "__main__":' in (text := file.read_text(encoding="utf-8"))
-                  and not OF_YADE.search(text))
-"""Modules that python3 -m runs."""
+                  and not OTHER.search(text))
+"""Modules that python3 -m runs; the others are scripts of YADE or of a peer's environment."""
 FIT = "calibration.fit"
 """Lists its parameters in place of its docstring."""
 
@@ -44,6 +45,11 @@ def documented(command):
     found = importlib.util.find_spec(command)
     name = f"{command}.__main__" if found.submodule_search_locations else command
     return ast.get_docstring(ast.parse(importlib.util.find_spec(name).loader.get_source(name)))
+
+
+def test_a_part_of_an_option_is_not_the_option(run):
+    code, _, wrong = run("calibration.sweep", "some.table", "script.py", "--job", "7")
+    assert code == 2 and "--job" in wrong and wrong.count("\n") == 1
 
 
 def test_all_commands_are_found():

@@ -151,7 +151,7 @@ def test_read_outline(tmp_path, text):
 
 @pytest.mark.parametrize("text, rule", [
     ("", "at least 3"), ("x,y\n0,0\n1,0\n", "at least 3"), ("0,0\n1,0\n0,a\n", "line 3"),
-    ("0,0\n1,0,0\n0,1\n", "line 2"),
+    ("0,0\n1,0,0\n0,1\n", "line 2"), ("0.0l,0\n0,2\n2,2\n2,0\n", "line 1"), ("x_mm,y_mm\n0,0\n2,0\n2,2\n", "in m"),
     ("0,0\n1,nan\n0,1\n", "finite"), ("0,0\n1,1\n1,0\n0,1\n", "cross"), ("0,0\n1,0\n1,0\n0,1\n", "repeated"),
     ("0,0\n1,0\n2,0\n", "cross"), ("0,0\n2,0\n2,2\n1,0\n0,2\n", "meet"), ("0,0\n2,0\n1,0\n1,1\n", "meet"),
 ])

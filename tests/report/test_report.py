@@ -97,9 +97,13 @@ def test_from_the_command_line_without_yade(tmp_path):
     done = subprocess.run([sys.executable, "-c", code.format(str(folder))], cwd=ROOT, capture_output=True,
                           encoding="utf-8")
     assert done.returncode == 0 and done.stdout.strip().endswith("report.html"), done.stderr
-    done = subprocess.run([sys.executable, "-m", "rockwear.report", tmp_path], cwd=ROOT, capture_output=True,
-                          encoding="utf-8")
-    assert done.returncode == 1 and done.stderr.count("\n") == 1 and "summary.json" in done.stderr
+    (tmp_path / "broken").mkdir()
+    (tmp_path / "broken/summary.json").write_text("{", encoding="utf-8")
+    for other in (tmp_path, tmp_path / "nowhere", tmp_path / "broken", folder / "summary.json"):
+        done = subprocess.run([sys.executable, "-m", "rockwear.report", other], cwd=ROOT, capture_output=True,
+                              encoding="utf-8")
+        assert done.returncode == 2 and done.stderr.count("\n") == 1, done.stderr
+        assert f"error: folder = {other}: must be that of a run that has ended" in done.stderr
 
 
 @pytest.mark.parametrize("word, code, said", [("--help", 0, "report of a run"), ("--no-such", 2, "usage: ")])
@@ -122,7 +126,7 @@ def test_quantities(value, unit, shown):
 @pytest.mark.parametrize("value, error, unit, shown", [
     (123.4e3, 5.67e3, "N/m", "123.4 ± 5.7 kN/m"), (216e3, 11.8e3, "N/m", "216 ± 12 kN/m"),
     (2.4, 0.27, "-", "2.40 ± 0.27"), (0.0051, 0.00021, "m", "5.10 ± 0.21 mm"), (2e3, math.nan, "N/m", "2 kN/m"),
-    (2e3, 0.0, "N/m", "2 kN/m"), (math.nan, 1.0, "m", "not known")])
+    (2e3, 0.0, "N/m", "2 kN/m"), (math.nan, 1.0, "m", "not known"), (351.15, 5.0, "K", "78.0 ± 5.0 °C")])
 def test_means_with_their_errors(value, error, unit, shown):
     assert page.with_error(value, error, unit) == shown
 

@@ -116,7 +116,7 @@ def test_cracks_are_counted_by_height_and_mode(tmp_path):
 
 def test_numbers_stand_with_their_errors(tmp_path):
     text = steady.steady_cut(make_steady(tmp_path / "run")).html()
-    assert "106.3 ± 4.9 kN/m" in text and "2.40 ± 0.27" in text and "too short" not in text
+    assert "106.3 ± 5.3 kN/m" in text and "2.40 ± 0.27" in text and "too short" not in text
 
 
 @pytest.mark.parametrize("chips", [2, 6])

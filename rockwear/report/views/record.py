@@ -6,8 +6,8 @@ from rockwear.report.page import Section, beside, folded, percent, quantity, tab
 
 def results(run):
     """Section of every result of summary.json, as shown and as written."""
-    rows = [(words(name), quantity(entry["value"], entry["unit"]), repr(entry["value"]), entry["unit"])
-            for name, entry in run.summary.get("results", {}).items()]
+    rows = [(words(name), quantity(run.result(name), run.unit(name)), repr(run.result(name)), run.unit(name))
+            for name in run.summary.get("results", {})]
     return Section("All results", "Values in SI are those of summary.json, to the last digit.",
                    [folded("Results", table(rows, ("result", "", "SI", "")))])
 
