@@ -51,8 +51,8 @@ def ratio(row, value):
 def verdict(row, result):
     """(word, ratio or nan) of one result of a published row.
 
-    agrees: within two standard errors or CLOSE; near: within FACTOR; differs. Of a statement: as it was judged. A
-    figure without numbers: shown.
+    agrees: within two standard errors or CLOSE; near: within FACTOR; differs. fitted, in place of the first two: of a
+    number that ours was fitted to. Of a statement: as it was judged. A figure without numbers: shown.
     """
     if "stated" in row:
         return WORDS[result["agrees"]], math.nan
@@ -60,9 +60,12 @@ def verdict(row, result):
         return "shown", math.nan
     times = ratio(row, result["value"])
     target = result["value"] / times
-    if abs(result["value"] - target) <= max(2 * result.get("error", 0.0), CLOSE * abs(target)):
-        return "agrees", times
-    return ("near" if 1 / FACTOR <= times <= FACTOR else "differs"), times
+    if not 1 / FACTOR <= times <= FACTOR:
+        return "differs", times
+    if result.get("fitted"):
+        return "fitted", times
+    close = abs(result["value"] - target) <= max(2 * result.get("error", 0.0), CLOSE * abs(target))
+    return ("agrees" if close else "near"), times
 
 
 def check(rows, ours):
@@ -139,9 +142,9 @@ def lines(rows, ours):
     text = ["# The sources' numbers beside ours", "",
             f"Of {sum(counted.values())} lines: "
             + ", ".join(f"{count} {word}" for word, count in counted.most_common()) + ".", "",
-            f"agrees: within two standard errors or {100 * CLOSE:g} %; near: within a factor of {FACTOR}; differs: "
-            "further off, or a statement that is not found, with the run that explains it; a guess: no run has tested "
-            "the explanation. Statements are judged by hand. ± is the standard error of the mean over packings. "
+            f"agrees: within two standard errors or {100 * CLOSE:g} %; near: within a factor of {FACTOR}; fitted: "
+            "within it, and what our rock or its size was fitted to; differs: further off, or a statement that is not "
+            "found, with the run that explains it; a guess: no run has tested the explanation. Statements are judged by hand. ± is the standard error of the mean over packings. "
             f"{NO_NUMBERS[0].upper() + NO_NUMBERS[1:]}: a figure of which the text gives none; what we found stands "
             "beside it. Numbers that a source gives as input are defaults of the scenes and are not listed, but for "
             "counts of particles, which follow from sizes that are ours.", ""]

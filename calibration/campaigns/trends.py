@@ -4,8 +4,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-NOTICED = 0.1
-"""Change over the range of a parameter, over the mean, below which a property counts as unchanged."""
+NOTICED, EXCLUDED = 0.1, 0.25
+"""Change over the range of a parameter, over the mean, below which a property counts as unchanged, where the packings
+exclude the larger one."""
 CERTAIN = 2.0
 """Change over its standard error from which it is none of the packings' scatter."""
 
@@ -20,9 +21,10 @@ class Trend(NamedTuple):
 
     @property
     def word(self):
-        """rises, falls, unchanged, or unclear: a change that is not CERTAIN."""
+        """rises, falls, unchanged, or unclear: a change that is not CERTAIN, or not certain to be small."""
         if abs(self.change) <= NOTICED:
-            return "unchanged"
+            most = abs(math.log1p(self.change)) + CERTAIN * self.error
+            return "unchanged" if most <= math.log1p(EXCLUDED) else "unclear"
         if not abs(math.log1p(self.change)) > CERTAIN * self.error:
             return "unclear"
         return "rises" if self.change > 0 else "falls"

@@ -30,7 +30,8 @@ def test_the_error_of_a_trend_is_that_of_linear_regression():
 
 
 @pytest.mark.parametrize("y, word", [(X**0.5, "rises"), (X**-0.2, "falls"), (X**0.02, "unchanged"),
-                                     (7 + 0 * X, "unchanged"), ([1, 9, 9, 1, 2, 9], "unclear")])
+                                     (7 + 0 * X, "unchanged"), ([1, 9, 9, 1, 2, 9], "unclear"),
+                                     (X**0.02 * (1 + 0.2 * np.array([1, 0, 0, 0, 0, 1])), "unclear")])
 def test_the_word_of_a_trend(y, word):
     found = trend(X, np.asarray(y) * NOISE)
     assert found.word == word

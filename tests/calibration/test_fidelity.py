@@ -35,6 +35,11 @@ def test_the_verdict_on_a_number(value, error, word, times):
     assert fidelity.verdict(ROWS[0], {"value": value, "error": error}) == (word, pytest.approx(times))
 
 
+@pytest.mark.parametrize("value, word", [(58e6, "fitted"), (80e6, "fitted"), (95e6, "differs")])
+def test_a_number_that_ours_was_fitted_to_does_not_agree_with_it(value, word):
+    assert fidelity.verdict(ROWS[0], {"value": value, "fitted": True})[0] == word
+
+
 @pytest.mark.parametrize("value, word, times", [
     (0.0025, "agrees", 1), (0.002, "agrees", 1), (0.0018, "near", 0.9), (0.0045, "near", 1.5), (0.006, "differs", 2)])
 def test_the_verdict_on_a_range_counts_from_its_nearer_end(value, word, times):
