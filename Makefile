@@ -3,13 +3,14 @@ PYTHON  := /usr/bin/python3
 OUT     := out
 SUDO    := $(if $(filter 0,$(shell id -u)),,sudo)
 
-TO_RUN  := yade python3-numpy python3-scipy python3-numba python3-matplotlib python3-pil python3-stl
+TO_READ := python3-numpy python3-scipy python3-numba python3-matplotlib python3-pil python3-stl
+TO_RUN  := yade
 TO_SWEEP := python3-distributed
 TO_TEST := python3-pytest python3-pytest-xdist $(TO_SWEEP)
 TO_LINT := python3-flake8
 
 .DEFAULT_GOAL := help
-.PHONY: help setup setup-sweep setup-test run test test-kernels validate bench fidelity campaigns campaign-wear \
+.PHONY: help setup-python setup setup-sweep setup-test run test test-kernels validate bench fidelity campaigns campaign-wear \
         campaign-uniaxial campaign-grains campaign-rocks campaign-steady campaign-worn campaign-granular \
         campaign-slow campaign-toughness campaign-groove campaign-dredging lint clean
 
@@ -33,8 +34,11 @@ endef
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "make %-18s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
 
-setup: ## install what a run needs (Debian packages) and check that YADE starts
-	$(call install,$(TO_RUN),numpy scipy numba matplotlib PIL stl)
+setup-python:
+	$(call install,$(TO_READ),numpy scipy numba matplotlib PIL stl)
+
+setup: setup-python ## install what a run needs (Debian packages) and check that YADE starts
+	$(call install,$(TO_RUN),numpy)
 	@yade --version >/dev/null 2>&1 || \
 	  { echo "setup: YADE is missing or does not start (try: yade --version)" >&2; exit 1; }
 
@@ -52,7 +56,8 @@ run: setup ## cut a sandstone steadily, the tip wearing; report in out/steady_cu
 test: setup-test ## all tests
 	$(PYTHON) -m pytest -n 2 --dist loadscope tests
 
-test-kernels: setup-test ## the tests of the physics without YADE
+test-kernels: setup-python ## the tests of the physics without YADE
+	$(call install,$(TO_TEST),pytest xdist)
 	$(PYTHON) -m pytest -n 2 tests/kernels
 
 validate: setup-sweep ## compare with exact solutions and the sources' numbers; page in out/validate
@@ -61,7 +66,7 @@ validate: setup-sweep ## compare with exact solutions and the sources' numbers; 
 bench: setup-sweep ## speed against error; figures and numbers in out/bench
 	$(PYTHON) -m calibration.benchmarks $(OUT)/bench
 
-fidelity: setup ## every published number beside ours, from stored results; page calibration/results/fidelity.md
+fidelity: setup-python ## every published number beside ours, from stored results; page calibration/results/fidelity.md
 	$(PYTHON) -m calibration.fidelity
 
 # Each of these runs on a cluster, too: make campaign-steady SCHEDULER=tcp://HOST:PORT
