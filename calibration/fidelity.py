@@ -144,8 +144,8 @@ def lines(rows, ours):
             + ", ".join(f"{count} {word}" for word, count in counted.most_common()) + ".", "",
             f"agrees: within two standard errors or {100 * CLOSE:g} %; near: within a factor of {FACTOR}; fitted: "
             "within it, and what our rock or its size was fitted to; differs: further off, or a statement that is not "
-            "found, with the run that explains it; a guess: no run has tested the explanation. Statements are judged by "
-            "hand. ± is the standard error of the mean over packings. "
+            "found, with the run that explains it; a guess: no run has tested the explanation. Statements are judged "
+            "by hand. ± is the standard error of the mean over packings. "
             f"{NO_NUMBERS[0].upper() + NO_NUMBERS[1:]}: a figure of which the text gives none; what we found stands "
             "beside it. Numbers that a source gives as input are defaults of the scenes and are not listed, but for "
             "counts of particles, which follow from sizes that are ours.", ""]
