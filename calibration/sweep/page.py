@@ -61,11 +61,16 @@ def _number(run, name):
     return value if isinstance(value, (int, float)) else math.nan
 
 
+def _swept(value, unit):
+    """A value of a parameter as shown; one in K may be a difference, to which no offset is added."""
+    if not isinstance(value, float):
+        return value
+    return f"{page.number(value)} K" if unit == "K" else page.quantity(value, unit)
+
+
 def _line(row, run, swept, units, results):
     """Cells of a row of the table."""
-    # In the units of --help: a parameter in K may be a difference, which no offset is added to.
-    values = [f"{page.number(row.values[name])} {units[name]}".strip() if isinstance(row.values[name], float)
-              else row.values[name] for name in swept]
+    values = [_swept(row.values[name], units[name]) for name in swept]
     if run is None:
         return [row.name, *values, *[""] * len(results), "failed" if row.failure else "not done"]
     name = page.Link(row.name, f"{row.name}/report.html") if (row.folder / "report.html").exists() else row.name

@@ -10,10 +10,10 @@ SPECIMEN = dict(width=0.05, height=0.025, radius_min=1e-3, radius_max=1.5e-3, bo
                 snapshot_period=1)
 
 
-def loaded(folder, test, edge, strength=0):
-    out = folder / f"{test}{edge}-{strength}"
+def loaded(folder, test, edge, **of_grains):
+    out = folder / f"{test}{edge}-{len(of_grains)}"
     done = run_script(ROOT / "yade_scripts/uniaxial.py", "--out", str(out), *arguments(
-        {**SPECIMEN, "test": test, "grain_edge": edge, "grain_strength": strength,
+        {**SPECIMEN, "test": test, "grain_edge": edge, **of_grains,
          "record_strain": 1e-5 if test == "tension" else 1e-4}), out=out)
     assert done.code == 0, done.stderr
     return done
@@ -44,14 +44,14 @@ def test_grains_make_rock_stronger_in_compression_over_tension(tests_done):
 
 def test_grains_as_strong_as_their_boundaries_are_none(tests_done, tmp_path):
     """To the last bit."""
-    none, done = tests_done["compression", 0], loaded(tmp_path, "compression", 3e-3, 1)
+    none, done = tests_done["compression", 0], loaded(tmp_path, "compression", 3e-3, grain_strength=1)
     assert value(done, "peak_stress") == value(none, "peak_stress")
     columns, expected = history(done.out), history(none.out)
     assert all((columns[name] == expected[name]).all() for name in expected if "stress" in name or "crack" in name)
 
 
 def test_grains_that_break_make_a_rock_between_the_two(tests_done, tmp_path):
-    done = loaded(tmp_path, "compression", 3e-3, 2)
+    done = loaded(tmp_path, "compression", 3e-3, grain_strength=2)
     weak, strong = (value(tests_done["compression", edge], "peak_stress") for edge in (0, 3e-3))
     assert 1.05 * weak < value(done, "peak_stress") < 0.95 * strong
     model, status = RunFolder(done.out).model, last_snapshot(done.out)["status"]

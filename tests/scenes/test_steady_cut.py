@@ -15,7 +15,7 @@ SMALL = dict(rock="", discs_per_depth=0, window_behind=0.016, window_ahead=0.048
              tooth_width=0.01, velocity=5.0, tool_kn=2e10, tool_kt=2e10, contact_damping=0.2, ramp_length=2e-3,
              cut_length=0.02, time_step_fraction=0.8, report="false")
 """A steady cut in miniature."""
-LAWS = {"brittle": dict(seed=2),
+LAWS = {"brittle": dict(seed=5),
         "softening": dict(bond_law="cohesive", kt=8e9, rotation="blocked", mu=0.3, weibull_modulus=4, heat="true",
                           control_radius=2.5, free_chips="leave"),
         "crushing": dict(bond_law="cohesive", kt=8e9, grain_edge=2.4e-3, bond_crushing=6e7, bond_tension=3e6,
