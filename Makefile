@@ -10,8 +10,8 @@ TO_TEST := python3-pytest python3-pytest-xdist $(TO_SWEEP)
 TO_LINT := python3-flake8
 
 .DEFAULT_GOAL := help
-.PHONY: help setup-python setup setup-sweep setup-test run test test-kernels validate bench fidelity campaigns campaign-wear \
-        campaign-uniaxial campaign-grains campaign-rocks campaign-steady campaign-worn campaign-granular \
+.PHONY: help setup-python setup setup-sweep setup-test run test test-kernels validate bench fidelity campaigns \
+        campaign-wear campaign-uniaxial campaign-grains campaign-rocks campaign-steady campaign-worn campaign-granular \
         campaign-slow campaign-toughness campaign-groove campaign-dredging lint clean
 
 # $(call install,packages,modules): the missing packages, where there is apt-get; then each module must be found.

@@ -106,12 +106,17 @@ def changes(found):
         if known:
             by = {words: (difference(row, known, what), known[what].value) for words, what in CHANGED.items()}
             common = len(row["each"].keys() & known["each"].keys())
-            significant = [words for words, (change, _) in by.items()
-                           if generated.significant(change.value, change.standard_error, common)]
+            significant = [words for words, what in CHANGED.items() if told_apart(row, known, what)]
             rows.append([case, common,
                          *(f"{shown(change)} ({100 * change.value / value:+.0f} %)" for change, value in by.values()),
                          ", ".join(significant) or "–"])
     return rows
+
+
+def told_apart(row, known, what):
+    """Whether two cases differ significantly in a quantity, by the packings that they have in common."""
+    change = difference(row, known, what)
+    return generated.significant(change.value, change.standard_error, len(row["each"].keys() & known["each"].keys()))
 
 
 def lengths_needed(found):
@@ -167,10 +172,7 @@ def _error(row, known, base, what):
     off = _off(row, base, what)
     if not known or off is None:
         return off
-    change = difference(row, known, what)
-    common = len(row["each"].keys() & known["each"].keys())
-    same = not generated.significant(change.value, change.standard_error, common)
-    return max(off, _off(known, base, what) or 0.0) if same else off
+    return off if told_apart(row, known, what) else max(off, _off(known, base, what) or 0.0)
 
 
 def _off(row, base, what):
