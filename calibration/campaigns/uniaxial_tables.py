@@ -1,7 +1,6 @@
 """Tables of laboratory campaigns: strengths by case and packing, changes against a reference, where rock failed."""
 import csv
 import math
-from collections import defaultdict
 
 import numpy as np
 from scipy.ndimage import gaussian_filter
@@ -105,17 +104,19 @@ def against(rows, reference):
     return generated.table(["case", f"UCS against {reference} on the same packing, % ± standard error"], lines)
 
 
-def likeness(maps):
-    """Mean correlation of the crack maps of two laws on the same packing, and of one law on different packings.
+def likeness(maps, like):
+    """Mean correlation of the crack maps of two cases on the same packing, and of one case on different packings.
 
-    maps: {(case, seed): crack map}, all of one size.
+    maps: {(case, seed): crack map}, all of one size; like: {case: cases that are compared with it}.
     """
-    cases = list(dict.fromkeys(case for case, _ in maps))
-    same, other = defaultdict(list), []
-    for (case, seed), density in maps.items():
-        if (cases[0], seed) in maps and case != cases[0]:
-            same[case].append(alike(density, maps[cases[0], seed]))
-        other += [alike(density, there) for (name, k), there in maps.items() if name == case and k > seed]
-    lines = [[f"{case} and {cases[0]}, same packing", shown(values, 1, 2)] for case, values in same.items()]
-    lines.append(["one law, different packings", shown(other, 1, 2)])
+    lines = []
+    for first, others in like.items():
+        for case in others:
+            values = [alike(density, maps[first, seed]) for (name, seed), density in maps.items()
+                      if name == case != first and (first, seed) in maps]
+            if values:
+                lines.append([f"{case} and {first}, same packing", shown(values, 1, 2)])
+    different = [alike(density, there) for (case, seed), density in maps.items()
+                 for (name, k), there in maps.items() if name == case and k > seed]
+    lines.append(["one case, different packings", shown(different, 1, 2)])
     return generated.table(["cracks in the same places", "correlation"], lines)
