@@ -17,7 +17,8 @@ from yade import CpmPhys, Ig2_Sphere_Sphere_ScGeom, O, ScGeom
 from rockwear.engines.access import contact_of, geometry_functor
 from rockwear.engines.bond_log import BROKEN, INTACT, SEPARATED, BondLog, Crack
 from rockwear.engines.crushing import let_crush, reference_length
-from rockwear.engines.memory import MARKS, MEMORY, TRIED, Places, check, offset, place, require_memory
+from rockwear.engines.memory import (
+    MARKS, MEMORY, TRIED, WORDS, Places, check, kernel_layout, list_of_bodies, offset, place, require_memory)
 from rockwear.kernels import compiled
 from rockwear.kernels.bond_laws.cohesive import UNBREAKABLE
 
@@ -151,6 +152,7 @@ class CpmBonds(BondLog):
 
     def connect(self):
         """Find the interactions of the scene that is in O now, and give them the strains of a restart."""
+        self.layout, self.body_list = kernel_layout(), list_of_bodies()
         self.contacts = {}
         self.shear_by_radii = geometry_functor(Ig2_Sphere_Sphere_ScGeom).avoidGranularRatcheting
         self._follow(np.flatnonzero(self.status != SEPARATED))
@@ -241,25 +243,24 @@ class CpmBonds(BondLog):
         spent, work = compiled.relieve(MEMORY, self.where, numbers, self.table, self.between_looks > 1, self.omega,
                                        self.lengths, *sums)
         self.energy_released += work
-        for n in spent.tolist():
-            self._log(n)
-            self.status[n] = BROKEN
+        self._log(spent)
+        self.status[spent] = BROKEN
         self.loose = None
 
     def _part(self, gone):
         """YADE has broken these bonds."""
         self._forget()
+        apart = [n for n in gone.tolist() if not self.contacts[n].interaction.isReal]
+        for n in apart:
+            # Its last shear force went with it: YADE leaves that of the step before.
+            self._dissipate(n, 0.5 * self.contacts[n].phys.shearForce.squaredNorm() / self.laws[n].kt)
+        self._log(gone)
+        self.status[gone] = BROKEN
         for n in gone.tolist():
-            interaction, _, phys = self.contacts[n]
-            if interaction.isReal:
-                self._log(n)
-                # Beyond omega = 1 a cohesive bond would push where it should pull.
-                phys.isCohesive, self.status[n] = False, BROKEN
-            else:
-                # Its last shear force went with it: YADE leaves that of the step before.
-                self._dissipate(n, 0.5 * phys.shearForce.squaredNorm() / self.laws[n].kt)
-                self._log(n)
-                self._separate(n)
+            # Beyond omega = 1 a cohesive bond would push where it should pull.
+            self.contacts[n].phys.isCohesive = False
+        for n in apart:
+            self._separate(n)
 
     def _dissipate(self, n, work):
         """Add work (J) of slip of a bond."""
@@ -267,15 +268,13 @@ class CpmBonds(BondLog):
         self.by_slip[n] += work
         self.energy_released += work
 
-    def _log(self, n):
-        """Add a bond that breaks now to the cracks."""
-        first, second = (O.bodies[end] for end in self.ends[n].tolist())
-        if self.status[n] != INTACT or first is None or second is None:
-            return
-        place, line = 0.5 * (first.state.pos + second.state.pos), second.state.pos - first.state.pos
-        mode = 1 if self.by_slip[n] <= 0.5 * self.dissipated[n] else 2
-        self.cracks.append(Crack(self.clock(), *place, *line.normalized(), mode, float(self.dissipated[n]),
-                                 *self.pairs[n].tolist()))
+    def _log(self, numbers):
+        """Add bonds that break now to the cracks."""
+        rows = compiled.between_ends(MEMORY, WORDS, self.layout, self.body_list, self.ends[numbers])
+        for n, row in zip(numbers.tolist(), rows.tolist()):
+            if self.status[n] == INTACT and not math.isnan(row[0]):
+                mode = 1 if self.by_slip[n] <= 0.5 * self.dissipated[n] else 2
+                self.cracks.append(Crack(self.clock(), *row, mode, float(self.dissipated[n]), *self.pairs[n].tolist()))
 
     def _separate(self, n):
         if self.status[n] != SEPARATED:

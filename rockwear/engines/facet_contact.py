@@ -67,8 +67,8 @@ class FacetContact(ToolContact):
         super().connect()
         self.functor = yade_friction_law()
 
-    def find_contacts(self):
-        super().find_contacts()
+    def _find(self):
+        super()._find()
         groups = {}
         for contact in self.possible:
             groups.setdefault(contact.rock, []).append(contact)
@@ -76,7 +76,7 @@ class FacetContact(ToolContact):
 
     def act(self):
         if self.collider.numAction != self.collided:
-            self.find_contacts()
+            self._find()
         stored = self._energy(of=np.flatnonzero(self.before[:, 3])) if self.reshaped else 0.0
         self.notches = []
         successions = [pair for rock, group in self.shared for pair in self._select(rock, group)]

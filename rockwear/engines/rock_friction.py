@@ -58,6 +58,9 @@ class RockContacts(Engine):
         erases a contact for good. Who erases one from Python has contacts found anew before the loop goes on.
         """
         self.collider = yade_engine(InsertionSortCollider)
+        self._find()
+
+    def _find(self):
         self.seen = self.collider.numAction
         self.bonds.parted.clear()
         self.places = compiled.by_bodies(possible_contacts(self.particles, bond_classes()), self.particles)
@@ -65,7 +68,7 @@ class RockContacts(Engine):
     def _keep_up(self):
         """Bring `places` up to date, where the collider has run or bonds have parted since."""
         if self.collider.numAction != self.seen:
-            self.find_contacts()
+            self._find()
         elif self.bonds.parted:
             self._add_parted()
 

@@ -72,8 +72,11 @@ class ToolContact(Engine):
         self._visit(0.0, sampled=False, stored=True)
 
     def find_contacts(self):
-        """Find the contacts that the collider holds possible now."""
+        """Find the contacts that the collider, which may be another one, holds possible now."""
         self.collider = yade_engine(InsertionSortCollider)
+        self._find()
+
+    def _find(self):
         self.collided = self.collider.numAction
         found = [(interaction, piece, body) for piece, body in self.tool.body_of.items()
                  for interaction in O.interactions.withBodyAll(body)]
@@ -114,7 +117,7 @@ class ToolContact(Engine):
 
     def act(self):
         if self.collider.numAction != self.collided:
-            self.find_contacts()
+            self._find()
         step, period = O.iter, self.sampling_period
         sampled, stored = step % period == 0, (step + 1) % period == 0
         if sampled or stored:

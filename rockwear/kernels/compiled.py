@@ -460,6 +460,22 @@ def positions(memory, words, layout, bodies, count):
 
 
 @compiled
+def between_ends(memory, words, layout, bodies, ends):
+    """(k, 6) m, the middle of two bodies (k, 2), and the unit vector from the first to the second; nan where one has
+    been erased. bodies: see `is_there`."""
+    found = np.full((len(ends), 6), np.nan)
+    for k, (first, second) in enumerate(ends):
+        if is_there(words, bodies, first) and is_there(words, bodies, second):
+            start = read(memory, state_of(words, layout, bodies, first) + layout[POSITION])
+            end = read(memory, state_of(words, layout, bodies, second) + layout[POSITION])
+            way = less(end, start)
+            length = norm(way)
+            for along in range(3):
+                found[k, along], found[k, 3 + along] = 0.5 * (start[along] + end[along]), way[along] / length
+    return found
+
+
+@compiled
 def add(a, b, factor):
     """a + b times a factor, of vectors."""
     return a[0] + b[0] * factor, a[1] + b[1] * factor, a[2] + b[2] * factor
@@ -517,6 +533,19 @@ def free(vector, blocked):
 
 
 @compiled
+def accelerations(memory, words, layout, bodies, motion, since, body):
+    """m/s2 and rad/s2 of a body 0..n-1 by what acts on it in this step, 0 where it is held. motion, since: see
+    `velocity_at`."""
+    forces, torques, per_mass, per_inertia, _, gravity = motion
+    if not per_mass[body] > 0.0:
+        return (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+    faster = add((gravity[0], gravity[1], gravity[2]), acting(memory, words, forces, body, since), per_mass[body])
+    turning = add((0.0, 0.0, 0.0), acting(memory, words, torques, body, since), per_inertia[body])
+    blocked = words[state_of(words, layout, bodies, body) + layout[BLOCKED]]
+    return free(faster, blocked), free(turning, blocked >> 3)
+
+
+@compiled
 def velocity_at(memory, words, layout, bodies, motion, since, body, point):
     """m/s, before the integrator, of a point (m) of a rigid body that is there.
 
@@ -524,16 +553,12 @@ def velocity_at(memory, words, layout, bodies, motion, since, body, point):
     (n,) m of the bodies 0..n-1, and (3,) m/s2 of gravity; since: 0 before the integrator, the time step (s) after it,
     when bodies have moved on and 0..n-1 are faster by what their forces did.
     """
-    forces, torques, per_mass, per_inertia, _, gravity = motion
     state = state_of(words, layout, bodies, body)
     velocity, spin = read(memory, state + layout[VELOCITY]), read(memory, state + layout[SPIN])
     place = add(read(memory, state + layout[POSITION]), velocity, -since)
-    if since > 0.0 and body < len(per_mass) and per_mass[body] > 0.0:
-        faster = add((gravity[0], gravity[1], gravity[2]), taken(memory, words, forces, body), per_mass[body])
-        turning = add((0.0, 0.0, 0.0), taken(memory, words, torques, body), per_inertia[body])
-        blocked = words[state + layout[BLOCKED]]
-        velocity = add(velocity, free(faster, blocked), -since)
-        spin = add(spin, free(turning, blocked >> 3), -since)
+    if since > 0.0 and body < len(motion[2]):
+        faster, turning = accelerations(memory, words, layout, bodies, motion, since, body)
+        velocity, spin = add(velocity, faster, -since), add(spin, turning, -since)
     return add(velocity, cross(spin, less(point, place)), 1.0)
 
 
@@ -598,7 +623,6 @@ def sample_tool(memory, words, layout, bodies, motion, since, contacts, least, p
     after the step, so that the work of the leapfrog integrator and the energy of the springs balance exactly. The
     tool's work is F v dt with the velocity of the tool at the contact point.
     """
-    forces, _, per_mass, _, _, gravity = motion
     in_yade = 0.0
     for k, contact in enumerate(contacts):
         if not is_real(words, layout, contact):
@@ -621,12 +645,8 @@ def sample_tool(memory, words, layout, bodies, motion, since, contacts, least, p
             cn = memory[phys + layout[DAMPING]]
             if cn > 0.0:
                 dashpot = read(memory, phys + layout[OF_DASHPOT])
-                force = acting(memory, words, forces, rock, since)
-                faster = per_mass[rock] * dt
-                faster = force[0] * faster, force[1] * faster, force[2] * faster
-                if per_mass[rock] > 0.0:
-                    faster = add(faster, gravity, dt)
-                gain = dot(dashpot, faster) * (0.5 if tool_first else -0.5)
+                faster, _ = accelerations(memory, words, layout, bodies, motion, since, rock)
+                gain = dot(dashpot, faster) * (0.5 * dt if tool_first else -0.5 * dt)
                 totals[DASHPOT_WORK] += (dot(dashpot, dashpot) / cn + gain) * elapsed
             after = norm(shear)
             if after > 0.0 and after >= SLIDING * memory[phys + layout[FRICTION]] * norm(normal):
@@ -706,8 +726,7 @@ def rub(memory, words, layout, bodies, motion, since, contacts, friction, elapse
     the slip less what a rising limit mu |Fn| lets the spring take up. The velocity is the mean of those before and
     after the step.
     """
-    forces, torques, per_mass, per_inertia, radii, _ = motion
-    total = 0.0
+    radii, total = motion[4], 0.0
     for k in range(len(contacts)):
         contact, first, second = contacts[k]
         if not touches(words, layout, bodies, contact, first, second):
@@ -721,11 +740,11 @@ def rub(memory, words, layout, bodies, motion, since, contacts, friction, elapse
             continue
         normal = read(memory, pointed(words[contact + layout[GEOMETRY]]) + layout[DIRECTION])
         of_first, of_second = velocities(memory, words, layout, bodies, motion, since, contact)
-        faster = add((0.0, 0.0, 0.0), acting(memory, words, forces, second, since), per_mass[second])
-        faster = add(faster, acting(memory, words, forces, first, since), -per_mass[first])
-        turn = add((0.0, 0.0, 0.0), acting(memory, words, torques, first, since), radii[first] * per_inertia[first])
-        turn = add(turn, acting(memory, words, torques, second, since), radii[second] * per_inertia[second])
-        velocity = add(less(of_second, of_first), less(faster, cross(turn, normal)), 0.5 * dt)
+        faster_first, turning_first = accelerations(memory, words, layout, bodies, motion, since, first)
+        faster_second, turning_second = accelerations(memory, words, layout, bodies, motion, since, second)
+        turn = add(add((0.0, 0.0, 0.0), turning_first, radii[first]), turning_second, radii[second])
+        faster = less(less(faster_second, faster_first), cross(turn, normal))
+        velocity = add(less(of_second, of_first), faster, 0.5 * dt)
         slip = -dot(shear, velocity) / tangential
         taken_up = -mu * memory[phys + layout[STIFFNESS]] / memory[phys + layout[SHEAR_STIFFNESS]] * dot(
             normal, velocity)

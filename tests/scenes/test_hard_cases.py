@@ -37,6 +37,11 @@ def test_the_energy_balance_closes_where_fragments_press_and_slide(checks):
     assert max(abs(found["residual"]) for found in checks["crushed in finer steps"].values()) < 0.004
 
 
+def test_a_held_disc_takes_no_speed_from_what_rubs_on_it(checks):
+    """Its force does not make it faster, by which the mean velocity of the step would be wrong."""
+    assert checks["glancing"]["held"] == checks["glancing"]["fixed"] > 0
+
+
 def test_no_crack_gives_energy_away(checks):
     for kind in ("torn in a few steps", "sheared", "crushed"):
         assert min(found["least crack"] for found in checks[kind].values()) > -1e-12

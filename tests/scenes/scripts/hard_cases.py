@@ -23,6 +23,7 @@ from rockwear.engines.velocity_increment import VelocityIncrement
 from rockwear.engines.shear_rotation import ShearRotation
 from rockwear.kernels.bond_laws import Cohesive, Coulomb, ElasticBrittle, ElasticDamage, ElastoPlasticSoftening
 from rockwear.kernels.packing import contacts
+from rockwear.model.contact import ContactLaw
 from rockwear.scenes.two_disc import drive_pair
 from yade_loop import insert
 
@@ -300,6 +301,31 @@ def in_flight(corrected, spin):
     return energy() / put_in - 1
 
 
+def glancing(known):
+    """A spinning disc glances off one that is held. known: whether samples of friction take that one for fixed all
+    along. -> J of friction."""
+    there = [0, COLUMNS]
+    rock = SimpleNamespace(count=2, pairs=np.empty((0, 2), int), **{
+        name: values[there] for name, values in vars(lattice()).items() if name not in ("count", "pairs")})
+    rock.places = rock.positions
+    O.reset()
+    yade_scene.put_rock_materials(mu=MU)
+    yade_scene.put_rock(rock)
+    yade_scene.put_loop(rock=ContactLaw(**SPRING))
+    for body in O.bodies:
+        body.mat = O.materials["loose rock"]
+    bonds = Bonds(pairs=rock.pairs, law=LAWS["brittle"], clock=lambda: O.time, period=None)
+    motion = VelocityIncrement(masses=rock.masses, inertias=rock.inertias, radii=rock.radii,
+                               fixed=np.array([known, False]))
+    friction = RockFriction(bonds=bonds, motion=motion)
+    O.bodies[0].state.blockedDOFs = "xyzXYZ"
+    O.bodies[1].state.vel, O.bodies[1].state.angVel = (-2.0, -20.0, 0.0), (0.0, 0.0, 2e4)
+    O.dt = 0.2 * TIME_STEP
+    insert(friction)
+    run(400)
+    return friction.total
+
+
 THREE = ["brittle", "damage", "plastic"]
 checks = {
     "torn in one step": {name: torn(law, TEAR, 3e4, 10) for name, law in LAWS.items()},
@@ -324,6 +350,7 @@ checks = {
                  for name, law in SPUN.items()},
     "in flight": [(in_flight(False, spin), in_flight(True, spin)) for spin in (2e4, 8e4)],
     "soft": [soft(seed) for seed in (1, 2)],
+    "glancing": {"fixed": glancing(True), "held": glancing(False)},
     "rolled": {name: rolled(LAWS[name]) for name in THREE},
     "cycled without new normals": cycled_without_new_normals(),
 }
