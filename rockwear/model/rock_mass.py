@@ -172,7 +172,7 @@ class RockMass(RockAssembly):
         i, j = self.pairs.T
         new = np.isin(np.arange(self.count), moved)
         made = self.bonded & (new[i] | new[j])
-        _, displacement, now, longer = self._entering(moved, new, positions, intact)
+        _, _, displacement, now, longer = self._entering(moved, new, positions, intact)
         made &= (new[i] & new[j]) | (abs(longer) <= MISFIT * self.height)
         longer = np.clip(longer, -MOST_PRESSED * self.bond_lengths, MOST_TENSE * self.bond_lengths)
         overlapping = packing.contacts(now, self.radii, -MISFIT * self.height)
@@ -184,14 +184,15 @@ class RockMass(RockAssembly):
 
     def misfit(self, positions, intact):
         """m by which half of the bonds between the rock that is there and the slab that enters next would be longer or
-        shorter than in untouched rock, or by more. positions (n, 2) m, intact (m,): as for `fit`."""
+        shorter than in untouched rock, or by more, and the part of them that would be left out. positions (n, 2) m,
+        intact (m,): as for `fit`."""
         before, moved = self.state(), self.advance()
         found = self._entering(moved, np.isin(np.arange(self.count), moved), positions, intact)
         self.restore(before)
-        return found[0]
+        return found[:2]
 
     def _entering(self, moved, new, positions, intact):
-        """Misfit (m) of the slab that enters, its displacement (k, 2) m, (n, 2) m of all particles with it, (m,) m by
+        """`misfit` of the slab that enters, its displacement (k, 2) m, (n, 2) m of all particles with it, (m,) m by
         which their bonds are longer than in untouched rock.
 
         Its displacement is that of the rock mass at the end of the window. Where half of that is loose, or displaced by
@@ -212,8 +213,8 @@ class RockMass(RockAssembly):
             now = positions.copy()
             now[moved] = places[moved] + displacement
             longer = np.linalg.norm(now[i] - now[j], axis=1) - self.bond_lengths
-            misfit = float(np.median(abs(longer[seam]))) if seam.any() else 0.0
-            found.append((misfit, displacement, now, longer))
+            off = abs(longer[seam]) if seam.any() else np.zeros(1)
+            found.append((float(np.median(off)), float(np.mean(off > MISFIT * self.height)), displacement, now, longer))
         return min(found, key=lambda one: one[0])
 
     def moduli(self):
