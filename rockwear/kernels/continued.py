@@ -1,25 +1,25 @@
 """How the displacement of rock goes on beyond where it is known."""
 import numpy as np
+from scipy.interpolate import RBFInterpolator
 
 FITS = 3
 """Fits, each without what the last one shows as loose."""
+SMOOTHING = 0.01
+"""Of the spline, with points over the height of the window. On the way of a cut rock that entered was off by 0.02 to
+0.3 um with 0.01, by up to 0.8 with 0.1, 2.3 with 1, and 1.2 with a parabola over the height and slopes."""
 
 
 def continued(points, displaced, wanted, *, tolerance, least):
     """(l, 2) m, displacement at the points `wanted` (l, 2), as that (k, 2) m of `points` (k, 2) goes on; None where
     fewer than `least` of them tell. (Ours.)
 
-    Least squares with a parabola over y and a line along x, whose slope is linear over y. Points that are off by more
-    than `tolerance` (m) are loose and do not count. Points are over a length of their own, which scales the sums.
+    A thin-plate spline, smoothed, with a linear part. Points that are off by more than `tolerance` (m) are loose and do
+    not count. Points are over a length of their own, which scales the smoothing.
     """
-    def basis(at):
-        x, y = at.T
-        return np.column_stack([np.ones(len(x)), y, y**2, x, x * y])
-
     for _ in range(FITS):
-        if len(points) < least:
+        if len(points) < max(least, 3):
             return None
-        found = np.linalg.lstsq(basis(points), displaced, rcond=None)[0]
-        whole = np.linalg.norm(displaced - basis(points) @ found, axis=1) <= tolerance
+        spline = RBFInterpolator(points, displaced, kernel="thin_plate_spline", smoothing=SMOOTHING, degree=1)
+        whole = np.linalg.norm(displaced - spline(points), axis=1) <= tolerance
         points, displaced = points[whole], displaced[whole]
-    return basis(wanted) @ found
+    return spline(wanted)
