@@ -69,6 +69,7 @@ def resistance_curve(*, force, opening, width, notch):
     positive("width", width, "m")
     require(SHORTEST <= notch < END, "notch", notch, f"from {SHORTEST:g} to {END:g}")
     force, opening = np.asarray(force, float), np.asarray(opening, float)
+    require(len(force) > 0, "force", "without rows", "a record of at least one", "N/m")
     peak = int(np.argmax(force))
     top = force[peak]
     above = int(np.argmax(force >= ELASTIC_RANGE[1] * top))

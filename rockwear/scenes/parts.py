@@ -82,7 +82,7 @@ def hardness(v):
         value = getattr(v, name)
         require(low <= value <= high, name, value,
                 f"inside the hardness table of {v.hardness_table}, {low:g} to {high:g}", "K")
-    if v.hardness_temperature >= 0:
+    if v.hardness_temperature != -1:
         require(low <= v.hardness_temperature <= high, "hardness_temperature", v.hardness_temperature,
                 f"inside the hardness table of {v.hardness_table}, {low:g} to {high:g}, or -1 for the tool's own", "K")
         return Hardness.constant(table(v.hardness_temperature))

@@ -68,7 +68,7 @@ def test_a_crack_that_never_grows_has_no_energy():
 
 
 @pytest.mark.parametrize("values, name", [({"width": 0.0}, "width"), ({"notch": 0.1}, "notch"),
-                                          ({"notch": 0.9}, "notch")])
+                                          ({"notch": 0.9}, "notch"), ({"force": [], "opening": []}, "force")])
 def test_bad_specimens_are_refused(values, name):
     with pytest.raises(ParameterError) as caught:
         fracture.resistance_curve(**{**dict(force=[0, 1], opening=[0, 1], width=0.04, notch=0.4), **values})

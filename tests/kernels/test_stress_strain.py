@@ -4,6 +4,7 @@ import math
 import numpy as np
 import pytest
 
+from rockwear.kernels.checks import ParameterError
 from rockwear.kernels.stress_strain import measured
 
 
@@ -21,6 +22,11 @@ def test_elastic_constants_are_those_before_cracks_open():
     assert found["poissons_ratio"] == (pytest.approx(0.25, rel=1e-9), "-")
     assert found["peak_stress"][0] == pytest.approx(13e9 * 3.8e-3, rel=5e-3)
     assert found["peak_strain"][0] == pytest.approx(3.8e-3, rel=5e-3)
+
+
+def test_a_curve_without_rows_is_refused():
+    with pytest.raises(ParameterError, match="stress = without rows Pa: must be a curve of at least one"):
+        measured(stress=np.empty(0), axial_strain=np.empty(0), lateral_strain=np.empty(0))
 
 
 def test_noise_before_and_after_the_range_counts_for_nothing():

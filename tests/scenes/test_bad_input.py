@@ -61,6 +61,7 @@ BROKEN_RULES = [
     ({"heat_fraction": 1.5}, "heat_fraction = 1.5: must be at most 1"),
     ({"tool_temperature": 1500},
      "tool_temperature = 1500 K: must be inside the hardness table of MET91, 273.15 to 873.15"),
+    ({"hardness_temperature": -0.5}, "hardness_temperature = -0.5 K: must be inside the hardness table of MET91"),
     ({"ambient_temperature": 20}, "ambient_temperature = 20 K: must be inside the hardness table"),
     ({"control_radius": 0.5}, "control_radius = 0.5: must be 0 or between 1 and 20"),
     ({"time_step": 1e-5}, "time_step = 1e-05 s: must be at most the stable step"),
