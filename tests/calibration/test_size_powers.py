@@ -50,6 +50,15 @@ def test_packings_that_failed_do_not_count():
     assert [row[2:6] for row in left] == [pytest.approx(row[2:6]) for row in right]
 
 
+def test_what_packings_do_not_tell_is_not_said_to_stay():
+    """Both means are the file's; one of the two changes is known, the other is not."""
+    test, (_, _, allowed) = next(iter(size_powers.TESTS.items()))
+    found = made_up(np.zeros(2), (3.0, 1.0, 1 / 3.0), (1, 2, 3, 4))
+    for ratio, spread in ((3.0, 0.5), (1 / 3.0, 5.0)):
+        found[test, ratio] = found[test, 1.0] * (1 + spread * allowed * np.array([-1, 1, -1, 1]))
+    assert [row[-1] for row in size_powers.changes(found, 3.0)[:3]] == [True, True, False]
+
+
 @pytest.fixture
 def run(tmp_path, monkeypatch, capsys):
     """run(word, ...) -> (exit code, stdout, stderr) of the command with the made-up laboratory."""

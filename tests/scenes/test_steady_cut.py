@@ -121,6 +121,7 @@ def test_a_cut_ends_once_its_mean_force_is_known(tmp_path):
     assert abs(run.summary["balances"]["energy"]["residual"]) < 0.03 * run.summary["balances"]["energy"]["tool_work"]
     again = steady_cut(tmp_path / "short", **{**fast, "cut_length": 0.01})
     assert "the mean cutting force is known not at all, and was to be to 50 %" in again.stderr
+    assert again.summary["results"]["mean_cutting_force_standard_error"]["value"] is None
 
 
 def test_sizes_follow_the_depth_of_cut_and_the_rock_follows_its_discs(tmp_path):
