@@ -21,6 +21,11 @@ LOST = 0.1
 """Part of Archard's volume that a rule of removal may lose without a warning."""
 
 
+def _two_digits(value):
+    """A number to two digits, without an exponent where that is usual."""
+    return f"{float(f'{value:.2g}'):g}"
+
+
 @dataclass(frozen=True)
 class ToolWear:
     """How the tool wears: a law with its wear acceleration in it, and the hardness over temperature.
@@ -63,8 +68,8 @@ class ToolWear:
         known = ("cannot be told from a run as short as this" if not math.isfinite(error) else
                  f"is known to {100 * error:.2g} % only")
         advice = "run longer" if trusted >= self.acceleration else (
-            f"use wear_acceleration = {trusted:.2g} at most instead of {self.acceleration:g}, and run that much longer")
-        goes = f", and {tool.piece} goes in {events:.2g} contact events" if math.isfinite(events) else ""
+            f"use wear_acceleration = {_two_digits(trusted)} at most instead of {self.acceleration:g}, and run that much longer")
+        goes = f", and {tool.piece} goes in {_two_digits(events)} contact events" if math.isfinite(events) else ""
         return [f"where the tool wears {known}{goes}: to trust the "
                 f"distribution of wear to {100 * self.tolerance:g} %, {advice}"]
 
