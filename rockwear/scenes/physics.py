@@ -68,7 +68,8 @@ class ToolWear:
         known = ("cannot be told from a run as short as this" if not math.isfinite(error) else
                  f"is known to {100 * error:.2g} % only")
         advice = "run longer" if trusted >= self.acceleration else (
-            f"use wear_acceleration = {_two_digits(trusted)} at most instead of {self.acceleration:g}, and run that much longer")
+            f"use wear_acceleration = {_two_digits(trusted)} at most instead of {self.acceleration:g}, and run that "
+            "much longer")
         goes = f", and {tool.piece} goes in {_two_digits(events)} contact events" if math.isfinite(events) else ""
         return [f"where the tool wears {known}{goes}: to trust the "
                 f"distribution of wear to {100 * self.tolerance:g} %, {advice}"]

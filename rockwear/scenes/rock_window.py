@@ -9,12 +9,6 @@ from rockwear.scenes import yade_scene
 
 MOST_LATE = 2.0
 """Slabs by which the window follows late while rock that entered would not fit."""
-FITS = 5e-5
-"""Parts of the window's height by which rock that fits is off: 1 um in 20 mm. Without load, and when no blow shakes
-the rock, it is off by 0.1 to 0.4 um."""
-FEW = 0.05
-"""Part of the bonds with the slab that enters that may be left out without waiting: of loose discs at the surface. A
-blow leaves out more, down the whole seam, and the rock would enter cracked."""
 MOST_MISSED = 0.005
 """Part of all bonds of rock that entered that may be missing without a warning; bonds with rock that was there are a
 sixth of them."""
@@ -87,8 +81,7 @@ class RockWindow:
 
     def _fits(self):
         rock = self.rock
-        misfit, left_out = rock.misfit(rock_positions(rock), self.scene.bonds.status == INTACT)
-        return misfit <= FITS * rock.height and left_out <= FEW
+        return rock.misfit(rock_positions(rock), self.scene.bonds.status == INTACT) <= 1.0
 
     def advance(self, distance=0.0):
         """Move on by a slab; distance: m that the tool has gone."""
@@ -192,7 +185,7 @@ class RockWindow:
                 "bonds_missed_ahead": (self.missed, "-")}
 
     def warnings(self, cracks):
-        """Lines on cracks (of engines.bond_log) that reached where the window ends."""
+        """Lines on cracks (of engines.bond_log) that reached the bottom, and on bonds that rock entered without."""
         heights = self.rock.strip.unroll(np.array([(crack.x, crack.y) for crack in cracks]).reshape(-1, 2))[:, 1]
         deep, found = int(np.sum(heights < NEAR_BOTTOM * self.rock.height)), []
         if deep > MOST_NEAR_BOTTOM * len(cracks):
