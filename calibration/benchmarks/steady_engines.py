@@ -36,7 +36,7 @@ SAMPLED = 6000
 
 def every_step(scene):
     """Sample every step from now on."""
-    scene.bonds.between_samples = scene.rock_friction.period = scene.tool.contact.sampling_period = 1
+    scene.bonds.every_bond, scene.rock_friction.period, scene.tool.contact.sampling_period = True, 1, 1
     base.register(scene.engines)
 
 

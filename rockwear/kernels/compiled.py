@@ -130,13 +130,13 @@ def let_slip(memory, where, numbers, laws, lengths):
 
 
 @compiled
-def slip_and_force(memory, where, status, separated, active):
-    """Of the bonds that are `active` (m,) bool and not `separated` by their status (m,): numbers (l,), slip, a strain,
+def slip_and_force(memory, where, status, separated, in_view):
+    """Of the bonds that are `in_view` (m,) bool and not `separated` by their status (m,): numbers (l,), slip, a strain,
     and shear force (N) (l, 6)."""
-    most = np.sum(active)
+    most = np.sum(in_view)
     numbers, found, count = np.empty(most, np.int64), np.empty((most, 6)), 0
     for n in range(len(status)):
-        if active[n] and status[n] != separated:
+        if in_view[n] and status[n] != separated:
             numbers[count] = n
             for along in range(3):
                 found[count, along] = memory[where[SLIPPED, n] + along]
@@ -146,23 +146,24 @@ def slip_and_force(memory, where, status, separated, active):
 
 
 @compiled
-def sample_slip(memory, where, numbers, before, status, separated, by_radii, steps, laws, dissipated, by_slip):
-    """Add the work of slip of bonds (k,) in the last step, so many `steps` times, to sums (m,) J. -> J, of all.
+def sample_slip(memory, where, numbers, before, status, separated, by_radii, laws, dissipated, by_slip):
+    """Add the work of slip of bonds (k,) in the last step to sums (m,) J. -> J, of all.
 
-    before: (k, 6), see `slip_and_force`. The work is the mean of the forces before and after the step times how far
-    they moved, less what the spring stores of it. They moved by YADE's increment, where that is `by_radii` without the
-    factor, radii over distance, of translations (kernels.stability). Bonds that are `separated` by their status (m,)
-    are no longer in memory.
+    before: (k, 6), see `slip_and_force`, which is brought up to date. The work is the mean of the forces before and
+    after the step times how far they moved, less what the spring stores of it. They moved by YADE's increment, where
+    that is `by_radii` without the factor, radii over distance, of translations (kernels.stability). Bonds that are
+    `separated` by their status (m,) are no longer in memory.
     """
     total = 0.0
     for k, n in enumerate(numbers):
         if status[n] == separated:
             continue
         slip, force = read(memory, where[SLIPPED, n]), read(memory, where[SHEAR_FORCE, n])
-        force_before = before[k, 3], before[k, 4], before[k, 5]
+        slip_before, force_before = read(before[k], 0), read(before[k], 3)
+        for along in range(3):
+            before[k, along], before[k, 3 + along] = slip[along], force[along]
         # YADE leaves the slip of a bond without any shear strength as it is.
-        if (slip[0] == before[k, 0] and slip[1] == before[k, 1] and slip[2] == before[k, 2]
-                and not (vanishes(force) and not vanishes(force_before))):
+        if slip == slip_before and not (vanishes(force) and not vanishes(force_before)):
             continue
         scale = 1.0
         if by_radii:
@@ -171,7 +172,30 @@ def sample_slip(memory, where, numbers, before, status, separated, by_radii, ste
         both = force[0] + force_before[0], force[1] + force_before[1], force[2] + force_before[2]
         work = -dot(both, (x * scale, y * scale, z * scale))
         stored = (dot(force, force) - dot(force_before, force_before)) / laws[KT, n]
-        work = 0.5 * steps * (work - stored)
+        work = 0.5 * (work - stored)
+        dissipated[n] += work
+        by_slip[n] += work
+        total += work
+    return total
+
+
+@compiled
+def shear_limit(memory, where, n, laws):
+    """Shear force (N) that bond n bears now."""
+    omega = memory[where[OMEGA, n]]
+    left = (1.0 - omega) / (1.0 - laws[COUPLING, n] * omega) if omega < 1.0 else 0.0
+    Fn = -dot(read(memory, where[NORMAL_FORCE, n]), read(memory, where[NORMAL, n]))
+    return max(left * laws[RT, n] - laws[MU, n] * Fn, 0.0)
+
+
+@compiled
+def late_slip(memory, where, numbers, laws, lengths, dissipated, by_slip):
+    """Add to sums (m,) J what bonds (k,) have slipped since the last look, at the limit that they bear now. lengths:
+    (m,) m. -> J, of all."""
+    total = 0.0
+    for n in numbers:
+        slip = read(memory, where[SLIPPED, n])
+        work = math.sqrt(dot(slip, slip)) * lengths[n] * shear_limit(memory, where, n, laws)
         dissipated[n] += work
         by_slip[n] += work
         total += work
@@ -320,46 +344,34 @@ def take_slip(memory, where, n, stiffness):
 
 
 @compiled
-def damage(memory, where, n, laws, slip, before, falls):
-    """Raise the damage `before` of bond n by its slip (m). In the next step its forces fall to what the law then
-    allows; what that dissipates is given now, and the forces, which YADE only gives out, are those of then.
-
-    falls: whether the shear force does so, too; where every step is sampled, the slip of the next one is in its sample.
-    -> the damage now, J of tension, J of slip.
+def damage(memory, where, n, laws, slip, before):
+    """Raise the damage `before` of bond n by its slip (m). In the next step its normal force falls to what the law then
+    allows; what that dissipates is given now, and the force, which YADE only gives out, is that of then. (The slip of
+    that step is sampled.) -> the damage now, J.
     """
     coupling = laws[COUPLING, n]
     left = max((1.0 - before) / (1.0 - coupling * before) - slip / laws[SLIP_END, n], 0.0)
     omega = min((1.0 - left) / (1.0 - coupling * left), SPENT)
-    force, shear = read(memory, where[NORMAL_FORCE, n]), read(memory, where[SHEAR_FORCE, n])
+    force = read(memory, where[NORMAL_FORCE, n])
     Fn = -dot(force, read(memory, where[NORMAL, n]))
-    Ft = math.sqrt(dot(shear, shear))
     kept = (1.0 - omega) / (1.0 - before) if Fn > 0.0 else 1.0
-    tension, by_slip = 0.5 * Fn**2 * (1.0 - kept) / (laws[KN, n] * (1.0 - before)), 0.0
     write(memory, where[NORMAL_FORCE, n], force[0] * kept, force[1] * kept, force[2] * kept)
-    limit = max(left * laws[RT, n] - laws[MU, n] * kept * Fn, 0.0)
-    if falls and Ft > limit:
-        by_slip = 0.5 * (Ft**2 - limit**2) / laws[KT, n]
-        scale = limit / Ft
-        write(memory, where[SHEAR_FORCE, n], shear[0] * scale, shear[1] * scale, shear[2] * scale)
-    return omega, tension, by_slip
+    return omega, 0.5 * Fn**2 * (1.0 - kept) / (laws[KN, n] * (1.0 - before))
 
 
 @compiled
-def relieve(memory, where, numbers, laws, falls, omega, lengths, dissipated, by_slip):
+def relieve(memory, where, numbers, laws, omega, lengths, dissipated):
     """Take the slip out of bonds (k,), damage them by it, and set their cohesion in YADE.
 
-    omega: (m,), lengths: (m,) m; falls: see `damage`; the work is added to sums (m,) J. -> numbers of those that slip
-    has broken, J.
+    omega: (m,), lengths: (m,) m; the work is added to the sum (m,) J. -> numbers of those that slip has broken, J.
     """
     spent, count, total = np.empty_like(numbers), 0, 0.0
     for n in numbers:
         slip = take_slip(memory, where, n, laws[KT, n] * lengths[n]) * lengths[n]
         if slip > 0.0 and omega[n] < SPENT and laws[SLIP_END, n] < math.inf:
-            omega[n], tension, slid = damage(memory, where, n, laws, slip, omega[n], falls)
-            dissipated[n] += tension
-            dissipated[n] += slid
-            by_slip[n] += slid
-            total += tension + slid
+            omega[n], work = damage(memory, where, n, laws, slip, omega[n])
+            dissipated[n] += work
+            total += work
             set_damage(memory, where, n, omega[n])
             if omega[n] == SPENT:
                 spent[count] = n
