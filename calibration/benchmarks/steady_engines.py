@@ -35,7 +35,7 @@ SAMPLED = 6000
 
 
 def every_step(scene):
-    """Sample every step from now on."""
+    """Sample every step, and every bond, from now on."""
     scene.bonds.every_bond, scene.rock_friction.period, scene.tool.contact.sampling_period = True, 1, 1
     base.register(scene.engines)
 

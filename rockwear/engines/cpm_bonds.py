@@ -90,8 +90,8 @@ class CpmBonds(BondLog):
     the energy. What tension dissipates follows from omega alone. The work of slip, the force of the two ends of a step
     times what a bond slipped, is added up in every step, but only of bonds that had slipped or softened by one of the
     last looks: few do at a time, and for long. In a cut 93 % of the work was theirs. That of the others is what they
-    slipped when a look finds it, times the shear force that they bear then: it missed 4 % of theirs. What a bond
-    slipped before it is found for the first time, the law tells from a straight path to where it is found.
+    slipped when a look finds it, times the shear force that they bear then; of those that broke meanwhile it is lost.
+    What a bond slipped before it is found for the first time, the law tells from a straight path to where it is found.
 
     C++ knows no damage by slip: a look counts what the bond slipped since the last one and raises the damage by it. A
     bond that slip has broken stays a contact in YADE until it opens; what it slips until then counts here too. And
@@ -114,7 +114,8 @@ class CpmBonds(BondLog):
         self.omega, self.active = np.zeros(count), np.zeros(count, bool)
         """Damage at the last look; whether the bond had slipped or softened by then."""
         self.in_view, self.seen = np.zeros(count, bool), np.zeros(count, bool)
-        """Whether it had since the look before, and is sampled; whether it has since the last look in its turn."""
+        """Whether its slip is added up: it slipped or softened before the last look in its turn, or since it by another
+        look, or has no strength, or is loose. Whether it did since the last look in its turn."""
         self.moving, self.before = np.zeros(0, int), np.zeros((0, 6))
         self.table = np.array([[getattr(law, name) for law in self.laws] for name in compiled.LAW], float)
         self.slips_freely = self.table[compiled.SLIP_END] == math.inf
@@ -239,17 +240,15 @@ class CpmBonds(BondLog):
         self.energy_released += crushing + softening
         if not len(numbers):
             return
-        found, known = numbers[~self.active[numbers]], numbers[self.active[numbers]]
-        self.active[found] = True
-        late = known[:0] if self.every_bond else known[~self.in_view[known]]
+        known = self.active[numbers]
+        found, late = numbers[~known], known & ~self.in_view[numbers] & (not self.every_bond)
+        self.active[found] = self.in_view[numbers] = self.seen[numbers] = True
         self.energy_released += compiled.begin(MEMORY, self.where, found, self.table, float(self.law.hardening), *sums)
-        self.energy_released += compiled.late_slip(MEMORY, self.where, late, self.table, self.lengths, *sums)
-        self.in_view[numbers] = self.seen[numbers] = True
         if len(gone):
             self._part(gone)
-            numbers = numbers[self.status[numbers] != SEPARATED]
-        spent, work = compiled.relieve(MEMORY, self.where, numbers, self.table, self.omega, self.lengths,
-                                       self.dissipated)
+            left = self.status[numbers] != SEPARATED
+            numbers, late = numbers[left], late[left]
+        spent, work = compiled.relieve(MEMORY, self.where, numbers, late, self.table, self.omega, self.lengths, *sums)
         self.energy_released += work
         self._log(spent)
         self.status[spent] = BROKEN

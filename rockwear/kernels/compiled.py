@@ -159,7 +159,8 @@ def sample_slip(memory, where, numbers, before, status, separated, by_radii, law
         if status[n] == separated:
             continue
         slip, force = read(memory, where[SLIPPED, n]), read(memory, where[SHEAR_FORCE, n])
-        slip_before, force_before = read(before[k], 0), read(before[k], 3)
+        slip_before = before[k, 0], before[k, 1], before[k, 2]
+        force_before = before[k, 3], before[k, 4], before[k, 5]
         for along in range(3):
             before[k, along], before[k, 3 + along] = slip[along], force[along]
         # YADE leaves the slip of a bond without any shear strength as it is.
@@ -186,20 +187,6 @@ def shear_limit(memory, where, n, laws):
     left = (1.0 - omega) / (1.0 - laws[COUPLING, n] * omega) if omega < 1.0 else 0.0
     Fn = -dot(read(memory, where[NORMAL_FORCE, n]), read(memory, where[NORMAL, n]))
     return max(left * laws[RT, n] - laws[MU, n] * Fn, 0.0)
-
-
-@compiled
-def late_slip(memory, where, numbers, laws, lengths, dissipated, by_slip):
-    """Add to sums (m,) J what bonds (k,) have slipped since the last look, at the limit that they bear now. lengths:
-    (m,) m. -> J, of all."""
-    total = 0.0
-    for n in numbers:
-        slip = read(memory, where[SLIPPED, n])
-        work = math.sqrt(dot(slip, slip)) * lengths[n] * shear_limit(memory, where, n, laws)
-        dissipated[n] += work
-        by_slip[n] += work
-        total += work
-    return total
 
 
 @compiled
@@ -278,7 +265,7 @@ def begin(memory, where, numbers, laws, hardening, dissipated, by_slip):
               -dot(read(memory, where[NORMAL_FORCE, n]), read(memory, where[NORMAL, n])) / laws[KN, n])
         strain = read(memory, where[STRAIN, n])
         ut = math.sqrt(dot(strain, strain)) * memory[where[LENGTH, n]]
-        # What the present force stores is not spent; where it is above the law's, `damage` tells what the fall gives.
+        # What the present force stores is not spent; where it is above the law's, it falls in the next step.
         work = slip_work(n, laws, hardening, un, ut) - 0.5 * dot(shear, shear) / laws[KT, n]
         dissipated[n] += work
         by_slip[n] += work
@@ -360,14 +347,20 @@ def damage(memory, where, n, laws, slip, before):
 
 
 @compiled
-def relieve(memory, where, numbers, laws, omega, lengths, dissipated):
+def relieve(memory, where, numbers, late, laws, omega, lengths, dissipated, by_slip):
     """Take the slip out of bonds (k,), damage them by it, and set their cohesion in YADE.
 
-    omega: (m,), lengths: (m,) m; the work is added to the sum (m,) J. -> numbers of those that slip has broken, J.
+    late: (k,) bool, of which the work of that slip does not count yet: it is the slip times the limit that they bear
+    now; omega: (m,), lengths: (m,) m; works are added to sums (m,) J. -> numbers of those that slip has broken, J.
     """
     spent, count, total = np.empty_like(numbers), 0, 0.0
-    for n in numbers:
+    for k, n in enumerate(numbers):
         slip = take_slip(memory, where, n, laws[KT, n] * lengths[n]) * lengths[n]
+        if late[k]:
+            work = slip * shear_limit(memory, where, n, laws)
+            dissipated[n] += work
+            by_slip[n] += work
+            total += work
         if slip > 0.0 and omega[n] < SPENT and laws[SLIP_END, n] < math.inf:
             omega[n], work = damage(memory, where, n, laws, slip, omega[n])
             dissipated[n] += work

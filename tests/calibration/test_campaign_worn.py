@@ -24,7 +24,7 @@ def campaign(tmp_path_factory):
             patch.setattr(sharp_and_worn, "SHAPES", 2)
             patch.setattr(sharp_and_worn, "SEEDS", SEEDS)
             patch.setattr(sharp_and_worn, "CUT", TINY)
-            patch.setattr(sharp_and_worn, "WORN", {**TINY, "rake": sharp_and_worn.RAKE, "wear_acceleration": 5e3})
+            patch.setattr(sharp_and_worn, "WORN", {**TINY, "rake": sharp_and_worn.RAKE, "wear_acceleration": 5.5e3})
             assert sharp_and_worn.main(folder) == 0
     run()
     return folder, run

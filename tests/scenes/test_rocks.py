@@ -36,7 +36,6 @@ def test_a_rock_of_the_library_is_cut_in_space(tmp_path):
     assert run.code == 0, run.stderr
     energy, results = run.summary["balances"]["energy"], run.summary["results"]
     assert run.summary["parameters"]["bond_crushing"] == 480e6
-    # Slip is sampled, in so short a cut: packings 1 to 4 miss -1.2, +0.9, -0.3 and -0.4 %.
     assert energy["tool_work"] > 0.05 and abs(energy["residual"]) < 0.01 * energy["tool_work"], energy
     assert results["shear_cracks"]["value"] > 20 and energy["rock_crushing"] > 0
 
