@@ -181,10 +181,16 @@ def sample_slip(memory, where, numbers, before, status, separated, by_radii, law
 
 
 @compiled
+def exchanged(part, coupling):
+    """Part of the shear strength that is left at the damage `part` < 1, and the damage at which so much is left."""
+    return (1.0 - part) / (1.0 - coupling * part)
+
+
+@compiled
 def shear_limit(memory, where, n, laws):
     """Shear force (N) that bond n bears now."""
     omega = memory[where[OMEGA, n]]
-    left = (1.0 - omega) / (1.0 - laws[COUPLING, n] * omega) if omega < 1.0 else 0.0
+    left = exchanged(omega, laws[COUPLING, n]) if omega < 1.0 else 0.0
     Fn = -dot(read(memory, where[NORMAL_FORCE, n]), read(memory, where[NORMAL, n]))
     return max(left * laws[RT, n] - laws[MU, n] * Fn, 0.0)
 
@@ -237,12 +243,12 @@ def slip_work(n, laws, hardening, un, ut):
         Ft = kt * (ut * k / STRAIGHT - slip)
         if omega < 1.0:
             Fn = kn * (u - shortened) * (1.0 - omega if opened > 0.0 else 1.0)
-            left = (1.0 - omega) / (1.0 - coupling * omega)
+            left = exchanged(omega, coupling)
             limit = max(left * laws[RT, n] - mu * Fn, 0.0)
             if Ft > limit:
                 more = min((Ft - limit) / (kt - laws[RT, n] / end_of_slip), Ft / kt)
                 left = max(left - more / end_of_slip, 0.0)
-                omega = (1.0 - left) / (1.0 - coupling * left)
+                omega = exchanged(left, coupling)
                 if omega < 1.0:
                     slip += more
                     Ft = kt * (ut * k / STRAIGHT - slip)
@@ -337,8 +343,8 @@ def damage(memory, where, n, laws, slip, before):
     that step is sampled.) -> the damage now, J.
     """
     coupling = laws[COUPLING, n]
-    left = max((1.0 - before) / (1.0 - coupling * before) - slip / laws[SLIP_END, n], 0.0)
-    omega = min((1.0 - left) / (1.0 - coupling * left), SPENT)
+    left = max(exchanged(before, coupling) - slip / laws[SLIP_END, n], 0.0)
+    omega = min(exchanged(left, coupling), SPENT)
     force = read(memory, where[NORMAL_FORCE, n])
     Fn = -dot(force, read(memory, where[NORMAL, n]))
     kept = (1.0 - omega) / (1.0 - before) if Fn > 0.0 else 1.0
