@@ -2,10 +2,11 @@
 
 C++ erases a bond that has opened to its end; if its particles meet again, that is a plain contact, by their radii
 (which must not overlap when they are bonded). YADE turns the total shear strain of a bond with the contact, but not its
-plastic part: a look takes the slip so far out of both. Of a bond with little or no shear strength left YADE takes too
-little slip, and pushes with the rest when it closes: that of loose bonds is taken out in every step. Neither damage nor
-strains are in YADE's saved scenes: `state` holds them, and `erase_separated`, at every canonical point, sets the damage
-from omega, which is all that a restart knows.
+plastic part. And of what a bond slips in a step YADE takes only the part that its limit is of the trial force: a bond
+whose limit is low beside what a step adds keeps the rest as a strain, and pushes with it when it closes and its limit
+rises, with energy out of nothing. So slip is taken out of both strains: of bonds that move in every step, else by
+looks. Neither damage nor strains are in YADE's saved scenes: `state` holds them, and `erase_separated`, at every
+canonical point, sets the damage from omega, which is all that a restart knows.
 """
 import math
 from collections import namedtuple
@@ -24,8 +25,8 @@ from rockwear.kernels.bond_laws.cohesive import UNBREAKABLE
 
 LOOK_PERIOD = 10
 """Steps between looks at all bonds."""
-LOOSE = 0.5
-"""Damage from which on the slip of a bond that slip does not damage is taken out of its strains in every step."""
+WEAK = 0.5
+"""Part of the shear strength below which a bond is in view though it has not slipped."""
 
 
 _Contact = namedtuple("_Contact", "interaction geom phys")
@@ -42,7 +43,7 @@ _BEHIND_SLIP = {"omega": "omega", "cohesion": "undamagedCohesion", "length": "re
 """Numbers of a bond: their names in YADE."""
 _GROUPS = {"bond": compiled.BOND, "forces": ("normal", "normal_force", "shear_force")}
 """What is read together."""
-_STATE = "dissipated", "by_slip", "slip_taken", "omega", "active", "in_view", "seen"
+_STATE = "dissipated", "by_slip", "slip_taken", "omega", "active", "in_view", "seen", "slid"
 """What a checkpoint holds as it is."""
 
 
@@ -87,11 +88,12 @@ class CpmBonds(BondLog):
     """All bonds of the rock under a law that YADE's concrete model (Law2_ScGeom_CpmPhys_Cpm) is.
 
     The C++ law gives every force. A look reads the damage omega and the slip of all bonds, for the crack log and for
-    the energy. What tension dissipates follows from omega alone. The work of slip, the force of the two ends of a step
-    times what a bond slipped, is added up in every step, but only of bonds that had slipped or softened by one of the
-    last looks: few do at a time, and for long. In a cut 93 % of the work was theirs. That of the others is what they
-    slipped when a look finds it, times the shear force that they bear then; of those that broke meanwhile it is lost.
-    What a bond slipped before it is found for the first time, the law tells from a straight path to where it is found.
+    the energy. What tension dissipates follows from omega alone. Slip and its work, the force of the two ends of a step
+    times what a bond slipped, are added up in every step, but only of bonds that are weak, or had slipped or softened
+    by one of the last looks: few do at a time, and for long. In a cut 93 % of the work was theirs. That of the others
+    is what they slipped when a look finds it, times the shear force that they bear then; of those that broke meanwhile
+    it is lost. What a bond slipped before it is found for the first time, the law tells from a straight path to where
+    it is found.
 
     C++ knows no damage by slip: a look counts what the bond slipped since the last one and raises the damage by it. A
     bond that slip has broken stays a contact in YADE until it opens; what it slips until then counts here too. And
@@ -115,11 +117,11 @@ class CpmBonds(BondLog):
         """Damage at the last look; whether the bond had slipped or softened by then."""
         self.in_view, self.seen = np.zeros(count, bool), np.zeros(count, bool)
         """Whether its slip is added up: it slipped or softened before the last look in its turn, or since it by another
-        look, or has no strength, or is loose. Whether it did since the last look in its turn."""
-        self.moving, self.before = np.zeros(0, int), np.zeros((0, 6))
+        look, or is weak. Whether it did since the last look in its turn."""
+        self.slid = np.zeros(count)
+        """m that the bonds in view slipped since the last look."""
+        self.moving, self.before = np.zeros(0, int), np.zeros((0, 3))
         self.table = np.array([[getattr(law, name) for law in self.laws] for name in compiled.LAW], float)
-        self.slips_freely = self.table[compiled.SLIP_END] == math.inf
-        self.may_be_loose = bool(self.slips_freely.any())
         self.crushes = bool((self.table[compiled.RC] < math.inf).any())
         self.crushed = np.zeros(count)
         """YADE's plastic strain epsNPl of the bonds at the last look, <= 0."""
@@ -128,12 +130,8 @@ class CpmBonds(BondLog):
         self.where = self.places.of("bond")
         self.rising = np.zeros(0, int)
         """Bonds whose damage rose between the last two looks, by opening: every step sets their cohesion."""
-        self._forget()
-
-    def _forget(self):
-        """Other bonds may be loose now, so that their slip must be taken out in every step, or pulled apart by YADE and
-        touch on, because they are crushed."""
-        self.loose = self.pulled_apart = None
+        self.pulled_apart = None
+        """Bonds that YADE has pulled apart and that touch on, because they are crushed; None where it is not known."""
 
     @staticmethod
     def reference_overlap(phys):
@@ -179,7 +177,7 @@ class CpmBonds(BondLog):
         self._prepare()
 
     def _follow(self, numbers):
-        self._forget()
+        self.pulled_apart = None
         found = []
         for n in numbers.tolist():
             interaction = contact_of(*self.pairs[n].tolist())
@@ -194,29 +192,18 @@ class CpmBonds(BondLog):
         if len(self.moving):
             self.energy_released += compiled.sample_slip(
                 MEMORY, self.where, self.moving, self.before, self.status, SEPARATED, self.shear_by_radii, self.table,
-                self.dissipated, self.by_slip)
+                self.lengths, self.slid, self.dissipated, self.by_slip)
         if O.iter % self.between_looks == 0:
             self._look()
-            self.in_view, self.seen, self.loose = self.seen, np.zeros(len(self.seen), bool), None
+            self.in_view, self.seen = self.seen, np.zeros(len(self.seen), bool)
             self._prepare()
         if len(self.rising):
             compiled.weaken(MEMORY, self.where, self.rising, self.table)
-        if self.may_be_loose:
-            self._let_slip()
-
-    def _let_slip(self):
-        """Take the slip out of loose bonds."""
-        if self.loose is None:
-            self.loose = compiled.damaged_beyond(LOOSE, self.omega, self.slips_freely, self.status, INTACT)
-            # Looks would not see it.
-            self.in_view[self.loose] = True
-        if len(self.loose):
-            compiled.let_slip(MEMORY, self.where, self.loose, self.table, self.lengths)
-            self._prepare()
 
     def _prepare(self):
-        """Keep slip and force (N) as they are before a step of the bonds whose work is sampled."""
-        self.moving, self.before = compiled.slip_and_force(
+        """Keep the forces before a step of the bonds whose slip is added up."""
+        self.in_view |= compiled.weak(self.table, self.omega, self.status, SEPARATED, WEAK)
+        self.moving, self.before = compiled.shear_forces(
             MEMORY, self.where, self.status, SEPARATED, self.active if self.every_bond else self.in_view)
 
     def look_at_all(self):
@@ -235,7 +222,7 @@ class CpmBonds(BondLog):
         sums = self.dissipated, self.by_slip
         numbers, self.rising, gone, crushing, softening = compiled.look(
             MEMORY, self.where, self.status, SEPARATED, self.table, float(self.law.hardening), self.crushes,
-            self.omega, self.active, self.crushed, self.lengths, *sums)
+            self.omega, self.active, self.slid, self.crushed, self.lengths, *sums)
         self.energy_crushed += crushing
         self.energy_released += crushing + softening
         if not len(numbers):
@@ -248,15 +235,15 @@ class CpmBonds(BondLog):
             self._part(gone)
             left = self.status[numbers] != SEPARATED
             numbers, late = numbers[left], late[left]
-        spent, work = compiled.relieve(MEMORY, self.where, numbers, late, self.table, self.omega, self.lengths, *sums)
+        spent, work = compiled.relieve(
+            MEMORY, self.where, numbers, late, self.table, self.omega, self.slid, self.lengths, *sums)
         self.energy_released += work
         self._log(spent)
         self.status[spent] = BROKEN
-        self.loose = None
 
     def _part(self, gone):
         """YADE has broken these bonds."""
-        self._forget()
+        self.pulled_apart = None
         apart = [n for n in gone.tolist() if not self.contacts[n].interaction.isReal]
         for n in apart:
             # Its last shear force went with it: YADE leaves that of the step before.
@@ -287,7 +274,7 @@ class CpmBonds(BondLog):
         if self.status[n] != SEPARATED:
             self.parted.append(n)
         self.status[n] = SEPARATED
-        self._forget()
+        self.pulled_apart = None
         self.contacts.pop(n, None)
         self.lengths[n] = 0.0
 

@@ -108,63 +108,55 @@ def weaken(memory, where, numbers, laws):
 
 
 @compiled
-def damaged_beyond(least, omega, which, status, intact):
-    """Numbers (k,) of `which` (m,) bool bonds are `intact` by their status (m,), and damaged by more than `least`."""
-    numbers, count = np.empty(len(omega), np.int64), 0
-    for n in range(len(omega)):
-        if which[n] and omega[n] > least and status[n] == intact:
-            numbers[count] = n
-            count += 1
-    return numbers[:count].copy()
-
-
-@compiled
-def let_slip(memory, where, numbers, laws, lengths):
-    """Leave loose bonds (k,) the elastic part of their shear strains, as `relieve` does, but without the turn into the
-    plane of the contact: that is for looks, this comes in every step. lengths: (m,) m."""
-    for n in numbers:
-        x, y, z = read(memory, where[SHEAR_FORCE, n])
-        stiffness = -laws[KT, n] * lengths[n]
-        write(memory, where[STRAIN, n], x / stiffness, y / stiffness, z / stiffness)
-        write(memory, where[SLIPPED, n], 0.0, 0.0, 0.0)
-
-
-@compiled
-def slip_and_force(memory, where, status, separated, in_view):
-    """Of the bonds that are `in_view` (m,) bool and not `separated` by their status (m,): numbers (l,), slip, a strain,
-    and shear force (N) (l, 6)."""
+def shear_forces(memory, where, status, separated, in_view):
+    """Of the bonds that are `in_view` (m,) bool and not `separated` by their status (m,): numbers (l,) and shear forces
+    (N) (l, 3)."""
     most = np.sum(in_view)
-    numbers, found, count = np.empty(most, np.int64), np.empty((most, 6)), 0
+    numbers, found, count = np.empty(most, np.int64), np.empty((most, 3)), 0
     for n in range(len(status)):
         if in_view[n] and status[n] != separated:
             numbers[count] = n
-            for along in range(3):
-                found[count, along] = memory[where[SLIPPED, n] + along]
-                found[count, 3 + along] = memory[where[SHEAR_FORCE, n] + along]
+            found[count, 0], found[count, 1], found[count, 2] = read(memory, where[SHEAR_FORCE, n])
             count += 1
     return numbers[:count], found[:count]
 
 
 @compiled
-def sample_slip(memory, where, numbers, before, status, separated, by_radii, laws, dissipated, by_slip):
-    """Add the work of slip of bonds (k,) in the last step to sums (m,) J. -> J, of all.
+def take_slip(memory, where, n, stiffness):
+    """Take the slip out of YADE's shear strain of bond n and leave the elastic part, in the plane of the contact.
+    stiffness: N, force over strain. -> the slip, a strain."""
+    normal, force = read(memory, where[NORMAL, n]), read(memory, where[SHEAR_FORCE, n])
+    along = dot(force, normal)
+    x, y, z = force[0] - normal[0] * along, force[1] - normal[1] * along, force[2] - normal[2] * along
+    length = math.sqrt(dot((x, y, z), (x, y, z)))
+    # As long as the force, nearly in the plane of which it lies.
+    scale = math.sqrt(dot(force, force)) / (-length * stiffness if length > 0.0 else 1.0)
+    x, y, z = x * scale, y * scale, z * scale
+    strain = read(memory, where[STRAIN, n])
+    slip = strain[0] - x, strain[1] - y, strain[2] - z
+    write(memory, where[STRAIN, n], x, y, z)
+    write(memory, where[SLIPPED, n], 0.0, 0.0, 0.0)
+    return math.sqrt(dot(slip, slip))
 
-    before: (k, 6), see `slip_and_force`, which is brought up to date. The work is the mean of the forces before and
-    after the step times how far they moved, less what the spring stores of it. They moved by YADE's increment, where
-    that is `by_radii` without the factor, radii over distance, of translations (kernels.stability). Bonds that are
-    `separated` by their status (m,) are no longer in memory.
+
+@compiled
+def sample_slip(memory, where, numbers, before, status, separated, by_radii, laws, lengths, slid, dissipated, by_slip):
+    """Take the slip of bonds (k,) in the last step out of their strains, and add it to `slid` (m,) m and its work to
+    sums (m,) J. -> J, of all.
+
+    before: (k, 3) N, see `shear_forces`, which is brought up to date; lengths: (m,) m. The work is the mean of the
+    forces before and after the step times how far they moved, less what the spring stores of it. They moved by YADE's
+    increment, where that is `by_radii` without the factor, radii over distance, of translations (kernels.stability).
+    Bonds that are `separated` by their status (m,) are no longer in memory.
     """
     total = 0.0
     for k, n in enumerate(numbers):
         if status[n] == separated:
             continue
-        slip, force = read(memory, where[SLIPPED, n]), read(memory, where[SHEAR_FORCE, n])
-        slip_before = before[k, 0], before[k, 1], before[k, 2]
-        force_before = before[k, 3], before[k, 4], before[k, 5]
-        for along in range(3):
-            before[k, along], before[k, 3 + along] = slip[along], force[along]
+        force, force_before = read(memory, where[SHEAR_FORCE, n]), (before[k, 0], before[k, 1], before[k, 2])
+        before[k, 0], before[k, 1], before[k, 2] = force
         # YADE leaves the slip of a bond without any shear strength as it is.
-        if slip == slip_before and not (vanishes(force) and not vanishes(force_before)):
+        if vanishes(read(memory, where[SLIPPED, n])) and not vanishes(force):
             continue
         scale = 1.0
         if by_radii:
@@ -174,6 +166,7 @@ def sample_slip(memory, where, numbers, before, status, separated, by_radii, law
         work = -dot(both, (x * scale, y * scale, z * scale))
         stored = (dot(force, force) - dot(force_before, force_before)) / laws[KT, n]
         work = 0.5 * (work - stored)
+        slid[n] += take_slip(memory, where, n, laws[KT, n] * lengths[n]) * lengths[n]
         dissipated[n] += work
         by_slip[n] += work
         total += work
@@ -184,6 +177,17 @@ def sample_slip(memory, where, numbers, before, status, separated, by_radii, law
 def exchanged(part, coupling):
     """Part of the shear strength that is left at the damage `part` < 1, and the damage at which so much is left."""
     return (1.0 - part) / (1.0 - coupling * part)
+
+
+@compiled
+def weak(laws, omega, status, separated, least):
+    """(m,) bool, bonds of less than the part `least` of their shear strength, without those `separated` by their status
+    (m,)."""
+    found = np.zeros(len(omega), np.bool_)
+    for n in range(len(omega)):
+        found[n] = status[n] != separated and (
+            omega[n] >= 1.0 or exchanged(omega[n], laws[COUPLING, n]) < least)
+    return found
 
 
 @compiled
@@ -280,15 +284,16 @@ def begin(memory, where, numbers, laws, hardening, dissipated, by_slip):
 
 
 @compiled
-def look(memory, where, status, separated, laws, hardening, crushes, omega, active, strains, lengths, dissipated,
+def look(memory, where, status, separated, laws, hardening, crushes, omega, active, slid, strains, lengths, dissipated,
          by_slip):
     """Which of the bonds softened or slipped since the last look, without those `separated` by their status (m,);
     harden those that crushed.
 
     omega: (m,), as of the last look, strains: (m,), YADE's plastic ones, and lengths: (m,) m, are brought up to date;
-    active: (m,), whether they had slipped or softened by then; crushes: whether bonds crush, hardening: their h. Works
-    are added to the sums (m,) J. -> numbers (l,); of those whose damage rose and that hold on by a coupled cohesion; of
-    those that YADE has broken; and J of crushing and of softening.
+    active: (m,), whether they had slipped or softened by then; slid: (m,) m, slip since then that is out of their
+    strains; crushes: whether bonds crush, hardening: their h. Works are added to the sums (m,) J. -> numbers (l,); of
+    those whose damage rose and that hold on by a coupled cohesion; of those that YADE has broken; and J of crushing and
+    of softening.
     """
     most = len(status)
     numbers, count, crushing, softening = np.empty(most, np.int64), 0, 0.0, 0.0
@@ -297,7 +302,7 @@ def look(memory, where, status, separated, laws, hardening, crushes, omega, acti
         if status[n] == separated:
             continue
         now = memory[where[OMEGA, n]]
-        if (now != omega[n] or not vanishes(read(memory, where[SLIPPED, n]))
+        if (now != omega[n] or slid[n] > 0.0 or not vanishes(read(memory, where[SLIPPED, n]))
                 or active[n] and vanishes(read(memory, where[SHEAR_FORCE, n]))):
             numbers[count] = n
             count += 1
@@ -319,24 +324,6 @@ def look(memory, where, status, separated, laws, hardening, crushes, omega, acti
 
 
 @compiled
-def take_slip(memory, where, n, stiffness):
-    """Take the slip out of YADE's shear strain of bond n and leave the elastic part, in the plane of the contact.
-    stiffness: N, force over strain. -> the slip, a strain."""
-    normal, force = read(memory, where[NORMAL, n]), read(memory, where[SHEAR_FORCE, n])
-    along = dot(force, normal)
-    x, y, z = force[0] - normal[0] * along, force[1] - normal[1] * along, force[2] - normal[2] * along
-    length = math.sqrt(dot((x, y, z), (x, y, z)))
-    # As long as the force, nearly in the plane of which it lies.
-    scale = math.sqrt(dot(force, force)) / (-length * stiffness if length > 0.0 else 1.0)
-    x, y, z = x * scale, y * scale, z * scale
-    strain = read(memory, where[STRAIN, n])
-    slip = strain[0] - x, strain[1] - y, strain[2] - z
-    write(memory, where[STRAIN, n], x, y, z)
-    write(memory, where[SLIPPED, n], 0.0, 0.0, 0.0)
-    return math.sqrt(dot(slip, slip))
-
-
-@compiled
 def damage(memory, where, n, laws, slip, before):
     """Raise the damage `before` of bond n by its slip (m). In the next step its normal force falls to what the law then
     allows; what that dissipates is given now, and the force, which YADE only gives out, is that of then. (The slip of
@@ -353,15 +340,17 @@ def damage(memory, where, n, laws, slip, before):
 
 
 @compiled
-def relieve(memory, where, numbers, late, laws, omega, lengths, dissipated, by_slip):
+def relieve(memory, where, numbers, late, laws, omega, slid, lengths, dissipated, by_slip):
     """Take the slip out of bonds (k,), damage them by it, and set their cohesion in YADE.
 
     late: (k,) bool, of which the work of that slip does not count yet: it is the slip times the limit that they bear
-    now; omega: (m,), lengths: (m,) m; works are added to sums (m,) J. -> numbers of those that slip has broken, J.
+    now; omega: (m,), lengths: (m,) m; slid: (m,) m, slip that is out of their strains, 0 afterwards; works are added to
+    sums (m,) J. -> numbers of those that slip has broken, J.
     """
     spent, count, total = np.empty_like(numbers), 0, 0.0
     for k, n in enumerate(numbers):
-        slip = take_slip(memory, where, n, laws[KT, n] * lengths[n]) * lengths[n]
+        slip = slid[n] + take_slip(memory, where, n, laws[KT, n] * lengths[n]) * lengths[n]
+        slid[n] = 0.0
         if late[k]:
             work = slip * shear_limit(memory, where, n, laws)
             dissipated[n] += work

@@ -76,9 +76,10 @@ def test_looks_ten_steps_apart_miss_little(checks):
 
 @pytest.mark.parametrize("kind", ["sheared", "crushed"])
 def test_bonds_that_move_tell_the_work_of_slip(checks, kind):
-    """Those that had not by the last look count at their limit when the next one finds them."""
-    (exact, motion), (found, same) = checks["slipped"][kind]
-    assert same == motion and exact > 0.1 and abs(found - exact) < 0.002
+    """Those that had not by the last look count at their limit when the next one finds them; the motion is the same
+    but for what YADE leaves in their strains until then."""
+    (exact, motion), (found, other) = checks["slipped"][kind]
+    assert abs(other - motion) < 1e-6 * motion and exact > 0.1 and abs(found - exact) < 0.002
 
 
 def test_at_its_brittle_limit_a_softening_rock_is_torn_as_a_brittle_one(checks):

@@ -67,6 +67,12 @@ def test_a_bond_that_slid_without_shear_strength_has_none_stored_when_it_closes(
     assert checks["closed again"]["1"] < 1e-12 and checks["closed again"]["10"] < 1e-3
 
 
+def test_a_weak_bond_that_slid_has_no_more_stored_than_it_bears_when_it_closes(checks):
+    """Of what a bond slips in a step YADE takes the part that its limit is of the trial force: where looks alone took
+    out the rest, it pushed with nine tenths of its strength."""
+    assert checks["weak, closed again"]["1"] < 1e-3 and checks["weak, closed again"]["10"] < 5e-3
+
+
 def test_slip_damages_as_the_law_says_late_by_a_look(checks):
     """Errors of the first order in the time between looks."""
     found = checks["damaged by slip"]

@@ -150,10 +150,11 @@ def without_realigning(law):
         return looked_at_now_and_then(law, 1)["force"]
 
 
-def closed_again(law, period):
-    """Error of the force of a bond that slides wide open without shear strength, and closes while nobody looks."""
+def closed_again(law, period, wide=0.3):
+    """Error of the force of a bond that slides open with little or no shear strength, and closes while nobody looks.
+    wide: its opening over that at which it is gone."""
     knots = [0, 800, 995, 997, 1205, 1207, 1300]
-    un = np.interp(np.arange(knots[-1]), knots, np.array([0.0, 0.3, 0.3, -0.02, 0.25, -0.02, 0.1]) * law.gone)
+    un = np.interp(np.arange(knots[-1]), knots, np.array([0.0, wide, wide, -0.02, wide - 0.05, -0.02, 0.1]) * law.gone)
     ut = np.interp(np.arange(knots[-1]), [0, 800, 1300], np.array([0.0, 0.0, 0.4]) * law.gone)
     return deviation(law, drive_pair(law, un, np.column_stack([ut, 0.5 * ut]), period=period))
 
@@ -393,6 +394,7 @@ checks = {
                           for steps, period in ((1000, 1), (4000, 1), (4000, 10))},
     "without realigning": without_realigning(LAWS["cohesive"]),
     "closed again": {period: closed_again(LASTING, period) for period in (1, 10)},
+    "weak, closed again": {period: closed_again(WIDE, period, wide=0.95) for period in (1, 10)},
     "coulomb": {name: coulomb_afterwards(LAWS[name]) for name in LINEAR},
     "work": {name: work_until_gone(LAWS[name]) for name in ("damage", "elasto-plastic", "cohesive")},
     "flying": {name: flying_apart(LAWS[name]) for name in ("brittle", "damage", "elasto-plastic", "Coulomb",
