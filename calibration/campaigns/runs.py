@@ -3,6 +3,7 @@ import argparse
 import asyncio
 import concurrent.futures
 import importlib.util
+import json
 import logging
 import os
 import pickle
@@ -29,6 +30,8 @@ PATIENCE = 5
 """s in which a scheduler must answer."""
 GONE = OSError, asyncio.CancelledError, concurrent.futures.CancelledError
 """What dask raises where the scheduler has gone."""
+GIVEN = "given.json"
+"""In a run's folder: the values that `Runs.start` gave it."""
 LOST = 10
 """Workers that a run may lose here before it counts as the cause."""
 
@@ -142,10 +145,13 @@ class Runs:
             self.scratch.cleanup()
 
     def start(self, name, script, **values):
-        """Queue a run of `script` (a path from the root of the repository). -> Started."""
+        """Queue a run of `script` (a path from the root of the repository). One with other values, or with a value that
+        is given no more, does not stand for it. -> Started."""
         folder = self.folder / name
-        if self.keep and finished(folder, values):
+        if self.keep and finished(folder, values) and _given(folder) == _words(values):
             return Started(folder)
+        folder.mkdir(parents=True, exist_ok=True)
+        (folder / GIVEN).write_text(json.dumps(_words(values)), encoding="utf-8")
         return self.submit(job(script, folder, [w for key, v in values.items() for w in (f"--{key}", str(v))]))
 
     def submit(self, one):
@@ -320,6 +326,18 @@ def finished(folder, values):
         return False
     return summary["exit_code"] == 0 and version == __version__ and same_files and all(
         name in parameters and _same(parameters[name], value) for name, value in values.items())
+
+
+def _words(values):
+    return {name: str(value) for name, value in values.items()}
+
+
+def _given(folder):
+    """What `Runs.start` noted in this folder; None where it did not."""
+    try:
+        return json.loads((folder / GIVEN).read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return None
 
 
 def existing(places):

@@ -32,7 +32,7 @@ def size(radius):
 
 def loading(factor):
     """The mechanics `factor` times as fast, over the same distance."""
-    return dict(velocity=4.0 * factor, start_up=0.005 / factor, cycle_time=0.004 / factor, heat_period=1e-4 / factor,
+    return dict(velocity=4.0 * factor, start_up=1e-4 / factor, cycle_time=0.005 / factor, heat_period=1e-4 / factor,
                 record_period=2e-5 / factor)
 
 

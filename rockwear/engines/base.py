@@ -6,7 +6,7 @@ from time import perf_counter
 
 from yade import O, PyRunner
 
-PHASES = FORCES, BETWEEN = "forces", "between steps"
+FORCES, BETWEEN = "forces", "between steps"
 """When a visit comes: within a step, after its forces and before the integrator, by a PyRunner in YADE's loop; or
 between two steps, from `run`. A PyRunner takes 10 to 40 us beside what it runs, so that within a step comes only what
 adds to its forces or changes what its integrator takes."""

@@ -4,7 +4,7 @@ from yade import InsertionSortCollider, O, Vector3
 
 from rockwear.engines.access import rock_states, yade_engine
 from rockwear.engines.base import FORCES, Engine
-from rockwear.engines.bond_log import INTACT
+from rockwear.engines.bond_log import BROKEN, INTACT
 from rockwear.engines.rock_friction import possible_contacts
 
 
@@ -23,11 +23,11 @@ def coefficients(rock, ratio, *, pairs=None, stiffness=None):
 class BondDashpots(Engine):
     """Normal and tangential dashpots in parallel with the springs [Rojek 2014, eqs 18-19], bodies 0..n-1.
 
-    They act on the pairs of the rock as long as their bond is intact, and later while the two overlap; on other pairs
-    of its particles while they overlap. rock: the specimen, in the plane; bonds: engines.bond_log.BondLog, whose law
-    has the stiffness of other contacts, too; ratio: xi, of the critical damping. All velocities are read and all forces
-    added in each step, which costs more than the step itself. `dissipated` (J) is the work of the forces over the mean
-    of the velocities before and after each step.
+    They act on the pairs of the rock as long as their bond is intact, later while the two are nearer than when it was
+    made, and once they have been apart while they overlap, as other pairs of its particles. rock: the specimen, in the
+    plane; bonds: engines.bond_log.BondLog, whose law has the stiffness of other contacts, too; ratio: xi, of the
+    critical damping. All velocities are read and all forces added in each step, which costs more than the step itself.
+    `dissipated` (J) is the work of the forces over the mean of the velocities before and after each step.
     """
 
     name = "bond_dashpots"
@@ -69,8 +69,8 @@ class BondDashpots(Engine):
         distance = np.hypot(*line.T)
         normal = line / distance[:, None]
         half_overlap = 0.5 * (rock.radii[i] + rock.radii[j] - distance)
-        on = half_overlap > 0
-        on[:len(rock.pairs)] |= self.bonds.status == INTACT
+        on, status, m = half_overlap > 0, self.bonds.status, len(rock.pairs)
+        on[:m] = (status == INTACT) | np.where(status == BROKEN, distance[:m] < rock.bond_lengths, on[:m])
         x, y = normal.T
         arms = rock.radii[i] - half_overlap, rock.radii[j] - half_overlap
         relative = motion[j, :2] - motion[i, :2]

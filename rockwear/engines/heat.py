@@ -124,7 +124,7 @@ class Heat(Engine):
         self.surface_time = self.clock
         self._find_paths()
         rock = free_surface(positions=access.rock_positions(self.rock), radii=self.rock.radii)
-        rock[self.rock.fixed | self.rock.absent] = rock[self.touched[:, 1]] = 0.0
+        rock[self.rock.goes_on() | self.rock.absent] = rock[self.touched[:, 1]] = 0.0
         touched = np.zeros(len(self.body.node_of), bool)
         touched[self.touched[:, 0]] = True
         exposed = np.concatenate([rock, self.body.exposed(touched)])

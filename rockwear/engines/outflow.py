@@ -1,7 +1,8 @@
 """Loose spheres that leave a scene."""
 import numpy as np
-from yade import O, Subdomain
+from yade import O
 
+from rockwear.engines import access
 from rockwear.engines.base import Engine
 
 
@@ -24,7 +25,7 @@ class Outflow(Engine):
 
     def act(self):
         ids = self.left()
-        heights = np.fromiter(Subdomain().getStateValuesFromIds(ids), float).reshape(len(ids), 13)[:, 1]
+        heights = access.states(ids)[:, 1]
         for i in np.asarray(ids, int)[heights < self.below].tolist():
             state = O.bodies[i].state
             self.erased += 1

@@ -69,12 +69,13 @@ class ToolContact(Engine):
         self.layout, self.body_list = kernel_layout(), list_of_bodies()
         self.motion.connect()
         self.find_contacts()
-        self._visit(0.0, sampled=False, stored=True)
 
     def find_contacts(self):
-        """Find the contacts that the collider, which may be another one, holds possible now."""
+        """Find the contacts that the collider, which may be another one, holds possible now, and the forces that the
+        next step begins with: steps may have been skipped."""
         self.collider = yade_engine(InsertionSortCollider)
         self._find()
+        self._visit(0.0, sampled=False, stored=True)
 
     def _find(self):
         self.collided = self.collider.numAction

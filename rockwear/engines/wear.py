@@ -24,9 +24,13 @@ class WearEngine(Engine):
         super().__init__(period=period)
         self.contact, self.law, self.volume_unit = contact, law, volume_unit
         self.hardness, self.temperature = hardness, temperature
-        self.coldest, self.hottest = math.inf, -math.inf
+        self.forget_temperatures()
         self.contact_energy_removed = self.work_used = 0.0
         self.events, self.rubbed = np.zeros(count, int), np.zeros(count, bool)
+
+    def forget_temperatures(self):
+        """A new tool has worn at none."""
+        self.coldest, self.hottest = math.inf, -math.inf
 
     def take_slid(self):
         """What slid since the last visit, see ToolContact.take_slid, counted as work and events; None if nothing

@@ -67,8 +67,13 @@ def integer(low, high=None):
 def numbers(each):
     """A rule: numbers with commas between them, each checked by the rule `each`."""
     def rule(name, value, unit):
-        return ",".join(f"{each(name, word.strip(), unit):g}" for word in str(value).split(","))
+        return ",".join(_shortest(each(name, word.strip(), unit)) for word in str(value).split(","))
     return rule
+
+
+def _shortest(value):
+    """A number as text that is read as the same number."""
+    return next(text for text in (f"{value:g}", repr(value)) if float(text) == value)
 
 
 def listed(text):

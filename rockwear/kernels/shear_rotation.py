@@ -41,12 +41,6 @@ def turning_rates(line, velocity, spins):
                    + 0.25 * (_along(normal, spins[0] + spins[1])**2).sum(axis=1))
 
 
-def turned_by_yade(shear, orbit, twist):
-    """Shear forces (n, 3) N rotated by YADE's rule, ScGeom::rotate. orbit, twist: rotation vectors (n, 3), rad."""
-    shear = shear - np.cross(shear, orbit)
-    return shear - np.cross(shear, twist)
-
-
 def _turned(vectors, before, after, angle):
     """Vectors across the normals `before`, rotated to the normals `after` and by `angle` (n,) about these."""
     across = vectors - (before + after) * ((vectors * after).sum(axis=1) / (1 + (before * after).sum(axis=1)))[:, None]

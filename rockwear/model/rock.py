@@ -173,6 +173,10 @@ class RockAssembly:
         """(m,) bool: pairs that are bonded as the scene begins."""
         return np.ones(len(self.pairs), bool)
 
+    def goes_on(self):
+        """(n,) bool, particles at whose far side rock goes on: it is no surface."""
+        return self.fixed
+
     @property
     def anchored(self):
         """(n,) bool: particles that hold what is rock and no chip."""

@@ -150,6 +150,12 @@ class RockMass(RockAssembly):
         return (np.flatnonzero(here & (x - self.begin < 1.05 * self._radii)),
                 np.flatnonzero(here & (self.end - x < 1.05 * self._radii)))
 
+    def goes_on(self):
+        """(n,) bool, particles at the window's bottom and ends now."""
+        found = self.anchored.copy()
+        found[np.concatenate(self.at_ends())] = True
+        return found
+
     def leave_out(self, gone):
         """Particles (n,) bool that are not there at first."""
         self.absent = np.asarray(gone, bool).copy()

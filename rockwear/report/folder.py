@@ -24,7 +24,7 @@ class RunFolder:
         self._find_snapshots()
 
     def _find_snapshots(self):
-        paths = sorted((self.path / "snapshots").glob("*.npz"))
+        paths = sorted((self.path / "snapshots").glob("*.npz"), key=lambda path: int(path.stem))
         found = [(path, *read_arrays(path, "time", "stage").values()) for path in paths]
         # A run that ends with a stage is shown twice at the same time, after the stage and after the run. What is there
         # at the end of the run counts, for wear comes in between.

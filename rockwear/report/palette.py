@@ -40,7 +40,7 @@ PACKINGS = {"random": "#b0522a", "square": "#3b7fb0", "triangular": "#4a8a3c"}
 
 # Bars, backgrounds and lines that guide the eye.
 BAR, BAR_ERROR, BAR_RESIDUAL = "#b08d57", "#444444", "#cc2222"
-STAGE, STAGE_BETWEEN, STAGE_END, CUTTING_TIME = "#f3ede1", "white", "#c9b48a", "#f3e3c4"
+STAGE, STAGE_BETWEEN, CUTTING_TIME = "#f3ede1", "white", "#f3e3c4"
 GUIDE, OUTLINE, LABEL_BACK, FIGURE, REMARK = "#999999", "black", "white", "white", "#666666"
 
 # The page.

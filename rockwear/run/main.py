@@ -42,6 +42,8 @@ MOST_STEPS = 1e10
 """In all: more than a month of computing."""
 DECISIVE_UNITS = {"N/m", "kg/m3", "m", "m/s", "s"}
 """Units of the parameters that the number of steps depends on."""
+BROKEN = OSError, RuntimeError, ArithmeticError, LookupError, ValueError, MemoryError
+"""What ends a run with one line: a full disk, YADE, numbers that have become nan or too large."""
 NOT_IDENTITY = {"out", "resume", "checkpoint_interval", "report", "vtk"}
 
 
@@ -186,7 +188,7 @@ class Run:
         """Run to the end. -> exit code."""
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, self._on_signal)
-        ended, code = self.ended or "finished", 0
+        ended, code, broken = self.ended or "finished", 0, False
         try:
             if self.values["resume"]:
                 # What was written may be later than the checkpoint.
@@ -197,9 +199,9 @@ class Run:
                 self._loop()
         except RunEnded as end:
             ended, code = str(end), 0 if end.healthy else 1
-        except (OSError, RuntimeError, FloatingPointError, ParameterError) as error:
-            ended, code = f"{type(error).__name__}: {error}".splitlines()[0], 1
-        if self.stopped_by:
+        except BROKEN as error:
+            ended, code, broken = f"{type(error).__name__}: {error}".splitlines()[0], 1, True
+        if self.stopped_by and not broken:
             print(f"stopped by signal {self.stopped_by} at t = {self.scene.time:.6g} s; --resume continues from here")
             return 128 + self.stopped_by
         return self._finish(ended, code)
@@ -226,7 +228,7 @@ class Run:
                 if not code and self.values["report"]:
                     report.write(self.folder)
                     print(f"report: {self.folder / 'report.html'}")
-        except (OSError, ParameterError) as error:
+        except BROKEN as error:
             # Of a disk that was full before it has been said.
             if not code:
                 print(f"error: {error}", file=sys.stderr)

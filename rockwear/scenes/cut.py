@@ -3,7 +3,7 @@ import numpy as np
 from yade import O
 
 from rockwear.engines import access
-from rockwear.engines.base import RunEnded
+from rockwear.engines.base import FORCES, RunEnded
 from rockwear.engines.bond_dashpots import BondDashpots
 from rockwear.engines.damping import BackgroundDamping, GrainDamping
 from rockwear.engines.energy_guard import EnergyGuard
@@ -128,6 +128,9 @@ class Cut(Scene):
                                                        critical=self.bonded_step)
         self.recorder = Recorder(self.output.history(), period=max(1, self.steps_in(accuracy.record_period)))
         self.guard = EnergyGuard(work=lambda: tool.contact.work_done, floor=self._least_energy(), period=GUARD_PERIOD)
+        if self.non_viscous_damping:
+            # After the step it cannot be told how fast bodies were before it.
+            tool.contact.phase = self.rock_friction.phase = FORCES
         curved = self.programme.motion.angular_velocity
         turned_in_space = not self.in_plane and len(rock.pairs)
         self._register(
@@ -184,8 +187,7 @@ class Cut(Scene):
 
     def _on_removal(self, worn, loose):
         if self.heat:
-            with self.programme.removal():
-                self.heat.remove(worn, loose)
+            self.heat.remove(worn, loose)
         if not self.tool.bodies.body_of:
             # A simulation that blows up may wear the tool away before its guard comes by.
             self.guard.act()
@@ -215,7 +217,7 @@ class Cut(Scene):
     def end_stage(self, folder):
         """Close the balances of the stage; the programme prepares the next one."""
         self.programme.close_stage()
-        for engine in (self.tool.wear_engine, self.tool.profile, self.damping, self.heat):
+        for engine in (self.tool.wear_engine, self.tool.profile, self.damping, self.boundary, self.heat):
             if engine:
                 engine.act()
         self.energy.close()

@@ -137,6 +137,7 @@ class Passes(Cycles):
     def _renew_tool(self):
         """A whole tool at its first temperature, or with the field that the stage starts from."""
         scene, tool = self.scene, self.scene.tool
+        tool.wear_engine.forget_temperatures()
         _, velocity, shank, _ = self.schedule[scene.stage]
         tool.model.erosion.restore({name: np.copy(value) for name, value in self.whole.items()})
         # What is said of the wear is said of this tool alone.

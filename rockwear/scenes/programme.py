@@ -2,7 +2,6 @@
 import math
 import shutil
 from abc import ABC, abstractmethod
-from contextlib import nullcontext
 
 import numpy as np
 from yade import O
@@ -84,10 +83,6 @@ class Programme(ABC):
 
     def stage_begun(self, folder):
         """The balances of the stage have begun."""
-
-    def removal(self):
-        """A context in which the heat of removed particles is taken out."""
-        return nullcontext()
 
     def reaches_rock(self):
         """Whether anything of the tool still meets the rock."""
@@ -175,6 +170,8 @@ class StartState:
             scene.programme.window.put_back(self.kept["window"])
             scene.programme.path_start = int(self.kept["path_start"])
         scene.connect_again()
+        # The last of the stage before came after its last record, and is none of this one.
+        scene.tool.contact.take_impulse()
         scene.tool.insert_again()
         if scene.heat:
             scene.heat.replace_rock(self.kept["rock_temperature"])

@@ -1,6 +1,4 @@
 """A pick's turns: cuts into fresh rock, and cooling in water, in which only heat flows [Rojek 2014, 5.3]."""
-from contextlib import contextmanager
-
 import numpy as np
 from scipy.spatial import cKDTree
 
@@ -29,7 +27,7 @@ class Turns(Programme):
         self.window, self.tip = window, tip
         self.approach_time, self.cut_time, self.turn_time = approach_time, cut_time, turn_time
         self.cycles, self.cooling_period, self.chip_area = cycles, cooling_period, chip_area
-        self.cooled, self.worn_heat = 0, 0.0
+        self.cooled = 0
 
     def stages(self):
         found = {"approach": self.approach_time}
@@ -88,25 +86,17 @@ class Turns(Programme):
         if scene.tool.profile and not scene.finished:
             scene.tool.profile.begin_cycle(scene.tool.mark_of_shape())
 
-    @contextmanager
-    def removal(self):
-        network = self.scene.heat.network
-        capacity, before = network.capacity, network.balance["removed"]
-        yield
-        lost = float((capacity - network.capacity).sum())
-        self.worn_heat += before - network.balance["removed"] - lost * self.scene.heat_model.tool_temperature
-
     # ---- what a checkpoint holds
 
     def state(self):
         window = {"window": self.window.state()} if self.window else {}
-        return {**super().state(), **window, "cooled": self.cooled, "worn_heat": self.worn_heat}
+        return {**super().state(), **window, "cooled": self.cooled}
 
     def restore(self, state):
         super().restore(state)
         if self.window:
             self.window.restore(state["window"], self.scene)
-        self.cooled, self.worn_heat = int(state["cooled"]), float(state["worn_heat"])
+        self.cooled = int(state["cooled"])
 
     # ---- what the folder of a run shows
 
@@ -119,7 +109,13 @@ class Turns(Programme):
         return {"tool_temperature_hot": (hot, "K"), "tool_temperature_mean": (mean, "K"),
                 "water_heat": (-heat.network.balance["convected"], "J/m"),
                 "pick_friction_heat": (float(heat.load.friction_heat.sum()), "J/m"),
-                "pick_heat_worn_away": (self.worn_heat, "J/m")}
+                "pick_heat_worn_away": (self._heat_worn_away(), "J/m")}
+
+    def _heat_worn_away(self):
+        """J/m above its first temperature that what has gone of the tool took along."""
+        heat = self.scene.heat
+        lost = float(heat.tool_capacity.sum() - heat.network.capacity[heat.n:].sum())
+        return -heat.network.balance["removed"] - lost * self.scene.heat_model.tool_temperature
 
     def cut_area(self):
         """Area (m2) of the rock that the tool has gone through."""

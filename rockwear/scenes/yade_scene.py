@@ -153,9 +153,13 @@ def make_bonds(rock, bonds):
 def standing_still():
     """Steps within are of no length and call no engine of ours: contacts and their forces alone are made anew."""
     engines, time_step = O.engines, O.dt
-    O.engines, O.dt = [ForceResetter(), access.yade_engine(InteractionLoop)], 0.0
-    yield
-    O.engines, O.dt = engines, time_step
+    access.put_engines([ForceResetter(), access.yade_engine(InteractionLoop)])
+    O.dt = 0.0
+    try:
+        yield
+    finally:
+        access.put_engines(engines)
+        O.dt = time_step
 
 
 def bond_again(rock, numbers):

@@ -141,6 +141,16 @@ def test_a_finished_run_is_kept_only_for_the_same_values(tmp_path):
     assert not finished(tmp_path, {"kn": 1e10}) and not finished(tmp_path, {"kt": 1e10})
 
 
+def test_a_run_does_not_stand_for_one_with_a_value_less(tmp_path, monkeypatch):
+    """Else the results of another rock would be told as those of the default."""
+    monkeypatch.setattr(Runs, "submit", lambda self, one: "queued")
+    runs = Runs(tmp_path, keep=True)
+    assert runs.start("a", "yade_scripts/uniaxial.py", kn=2e10, kt=1e10) == "queued"
+    store(tmp_path / "a", {"kn": 2e10, "kt": 1e10})
+    assert runs.start("a", "yade_scripts/uniaxial.py", kn=2e10, kt=1e10).folder == tmp_path / "a"
+    assert runs.start("a", "yade_scripts/uniaxial.py", kn=2e10) == "queued"
+
+
 def test_a_finished_run_is_kept_only_for_the_same_files(tmp_path):
     outline = tmp_path / "tooth.csv"
     outline.write_text("0,0", encoding="utf-8")

@@ -10,6 +10,7 @@ from rockwear.kernels.packing import pack
 from rockwear.kernels.conduction import (
     PATHS, STEFAN_BOLTZMANN, HeatNetwork, bar_conductance, calibrated_conductance, effective_conductivity, effusivity,
     effusivity_share, hot_and_mean, paths)
+from tests.kernels import exact_heat
 
 
 def chain(n, conductance=1.0, capacity=1.0, temperature=300.0):
@@ -65,7 +66,7 @@ def dislodged(seed=3):
 def test_two_particles_meet_as_the_exponential():
     network = HeatNetwork(capacity=[2.0, 6.0], edges=[[0, 1]], conductance=3.0, temperature=[400.0, 300.0])
     network.advance(0.5, step=1e-4)
-    exact = analytic.two_nodes(0.5, capacities=[2.0, 6.0], conductance=3.0, temperatures=[400.0, 300.0])
+    exact = exact_heat.two_nodes(0.5, capacities=[2.0, 6.0], conductance=3.0, temperatures=[400.0, 300.0])
     assert network.temperature == pytest.approx(exact, abs=0.01)
     network.advance(100.0)
     assert network.temperature == pytest.approx([325.0, 325.0])
@@ -105,7 +106,7 @@ def test_chain_decays_at_its_own_rate_and_at_that_of_the_rod():
     network = rod(cells, np.sin(np.pi * np.arange(cells + 1) / cells))
     network.advance(time, step=time / 20000)
     measured = -np.log(network.temperature[cells // 2]) / time
-    assert measured == pytest.approx(analytic.chain_decay_rate(cells=cells, conductance=cells, capacity=1 / cells),
+    assert measured == pytest.approx(exact_heat.chain_decay_rate(cells=cells, conductance=cells, capacity=1 / cells),
                                      rel=2e-5)
     assert measured == pytest.approx(analytic.rod_decay_rate(length=1.0, diffusivity=1.0), rel=2.2e-3)
 
@@ -123,7 +124,7 @@ def test_second_order_in_space():
 
 def test_first_order_in_time():
     cells, time, counts = 10, 0.1, np.array([50, 100, 200, 400])
-    rate = analytic.chain_decay_rate(cells=cells, conductance=cells, capacity=1 / cells)
+    rate = exact_heat.chain_decay_rate(cells=cells, conductance=cells, capacity=1 / cells)
     errors = []
     for count in counts:
         network = rod(cells, np.sin(np.pi * np.arange(cells + 1) / cells))
@@ -397,10 +398,10 @@ def test_stable_step_is_sharp(n):
 
 def test_stable_step_of_a_chain_is_exact():
     network = chain(9, conductance=3.0, capacity=2.0)
-    largest = analytic.chain_decay_rate(cells=9, conductance=3.0, capacity=2.0, mode=8)
+    largest = exact_heat.chain_decay_rate(cells=9, conductance=3.0, capacity=2.0, mode=8)
     assert network.stable_step() == pytest.approx(2 / largest)
     network.fix([0, 8], 300.0)
-    largest = analytic.chain_decay_rate(cells=8, conductance=3.0, capacity=2.0, mode=7)
+    largest = exact_heat.chain_decay_rate(cells=8, conductance=3.0, capacity=2.0, mode=7)
     assert network.stable_step() == pytest.approx(2 / largest)
 
 
@@ -447,7 +448,7 @@ def test_radiation_at_1500_K_stays_bounded_and_cools():
 def test_a_radiating_body_cools_exactly_in_the_limit_of_short_steps(surroundings):
     """From 1500 to 700 K; without surroundings T = T0 (1 + 3 sigma eA T0^3 t / C)^(-1/3)."""
     body = dict(capacity=20.0, area_times_emissivity=0.5)
-    seconds = float(analytic.radiative_cooling_time(700.0, first=1500.0, surroundings=surroundings, **body))
+    seconds = float(exact_heat.radiative_cooling_time(700.0, first=1500.0, surroundings=surroundings, **body))
     if not surroundings:
         growth_of_t = 1 + 3 * STEFAN_BOLTZMANN * 0.5 * 1500.0**3 * seconds / 20.0
         assert 1500.0 * growth_of_t**(-1 / 3) == pytest.approx(700.0, rel=1e-12)

@@ -45,3 +45,19 @@ def test_too_few_points_tell_nothing():
     assert continued(POINTS, field(POINTS), WANTED, tolerance=1e-9, least=61) is None
     displaced = field(POINTS) + np.where(np.arange(60) % 2, 1e-3, -1e-3)[:, None]
     assert continued(POINTS, displaced, WANTED, tolerance=1e-9, least=30) is None
+
+
+def test_points_on_a_line_and_points_of_which_most_are_loose_tell_nothing():
+    line = np.column_stack([np.linspace(-0.3, 0.0, 60), np.linspace(0.0, 1.0, 60)])
+    assert continued(line, field(line), WANTED, tolerance=1e-9, least=30) is None
+    displaced = field(POINTS)
+    displaced[:25] += np.random.default_rng(2).normal(size=(25, 2))
+    assert continued(POINTS, displaced, WANTED, tolerance=1e-2, least=60) is None
+
+
+def test_many_points_take_as_long_as_some_and_tell_as_much():
+    chance = np.random.default_rng(3)
+    rock, ahead = (np.column_stack([chance.uniform(*ends, count), chance.uniform(0, 1, count)])
+                   for ends, count in (((-0.12, 0), 6000), ((0, 0.06), 50)))
+    missed = continued(rock, pressed(rock), ahead, tolerance=1e-6, least=50) - pressed(ahead)
+    assert np.sqrt(np.mean(missed**2)) < 0.008 * np.ptp(pressed(ahead), axis=0).max()

@@ -67,6 +67,12 @@ def test_a_crack_that_never_grows_has_no_energy():
     assert math.isfinite(found["modulus"]) and math.isnan(found["energy"])
 
 
+def test_a_crack_that_ends_before_the_onset_has_no_energy():
+    force, opening = sharp_crack(modulus=13e9, energy=30.0, width=0.1, notch=0.4, last=0.43)
+    found = fracture.resistance_curve(force=force, opening=opening, width=0.1, notch=0.4)
+    assert found["crack"][-1] == pytest.approx(0.43, abs=1e-4) and math.isnan(found["energy"])
+
+
 @pytest.mark.parametrize("values, name", [({"width": 0.0}, "width"), ({"notch": 0.1}, "notch"),
                                           ({"notch": 0.9}, "notch"), ({"force": [], "opening": []}, "force")])
 def test_bad_specimens_are_refused(values, name):

@@ -3,12 +3,18 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from rockwear.kernels.shear_rotation import shear_to_start_from, turned_by_yade, turning_rates
+from rockwear.kernels.shear_rotation import shear_to_start_from, turning_rates
 
 RADII = np.array([[0.010], [0.014]])
 KT = np.array([2e6])
 DISTANCE = 0.0225
 AXES = {"across": (0, 0, 1.0), "slanting": (0.6, 0, 0.8), "along": (1.0, 0, 0)}
+
+
+def turned_by_yade(shear, orbit, twist):
+    """Shear forces (n, 3) N rotated by YADE's rule, ScGeom::rotate. orbit, twist: rotation vectors (n, 3), rad."""
+    shear = shear - np.cross(shear, orbit)
+    return shear - np.cross(shear, twist)
 
 
 def yade_step(shear, line, velocity, spins, dt):

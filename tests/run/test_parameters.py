@@ -56,6 +56,12 @@ def test_every_parameter_gets_a_value_in_the_order_of_its_declaration():
     assert listed(read("")["velocities"]) == [4.0, 1.0]
 
 
+def test_listed_numbers_keep_all_their_digits():
+    """Two seeds of a day are not one."""
+    assert numbers(integer(0))("seeds", "20240101, 20240102,7", "") == "20240101,20240102,7"
+    assert listed(read("--velocities 0.12345678,4")["velocities"]) == [0.12345678, 4.0]
+
+
 @pytest.mark.parametrize("words, error", [
     ("--velocty 4", "velocty = 4: must be a known parameter; did you mean velocity (--help lists them)"),
     ("--wear_accel 4", "wear_accel = 4: must be a known parameter; did you mean wear_acceleration "

@@ -48,6 +48,7 @@ def test_no_crack_gives_energy_away(checks):
 
 
 def test_discs_erased_while_their_bonds_soften_and_break(checks):
+    assert len(checks["erased"]) > 3
     for law, found in checks["erased"].items():
         assert found["erased"] == 12 and found["all gone"] and found["left over"] == 0
         assert abs(found["residual"]) < (0.01 if law.startswith("cohesive") else 2e-3)
@@ -112,6 +113,7 @@ def test_springs_sheared_as_contacts_move_gain_no_energy(checks):
 
 
 def test_soft_bonds_sheared_as_contacts_move_break_with_their_energy(checks):
+    assert len(checks["soft"]) > 1
     for broken, residual in checks["soft"]:
         assert broken > 0.8 and abs(residual) < 3e-4
 

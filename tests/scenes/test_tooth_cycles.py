@@ -219,6 +219,13 @@ def test_every_cycle_starts_on_the_rock_that_the_start_up_left(same_tool):
         assert np.array_equal(shot["rock_positions"], left["rock_positions"])
 
 
+def test_the_end_of_a_cycle_is_no_force_of_the_next_one(same_tool):
+    """Its last impulse, after its last record, came into the first record of the next: eight times the mean force."""
+    found = history(same_tool.out)
+    first = [np.flatnonzero(found["stage [-]"] == n)[0] for n in (2, 3)]
+    assert (found["cutting_force [N/m]"][first] == 0.0).all() and found["cutting_force [N/m]"].max() > 0
+
+
 def test_a_worn_tool_gets_the_time_to_come_to_the_rock(tmp_path):
     """Else a tooth whose tip has gone back by more than a cycle's way would meet no rock any more."""
     seconds = 6e-4

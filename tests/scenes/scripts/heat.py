@@ -67,6 +67,9 @@ class Engines:
         self.positions = ROCK[:, :dimension]
         self.put({}, {})
 
+    def goes_on(self):
+        return self.fixed
+
     def put(self, work, touching):
         self.work, self.touching = work, touching
 

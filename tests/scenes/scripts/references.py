@@ -12,6 +12,7 @@ from yade import (
     Ip2_FrictMat_FrictMat_FrictPhys, Law2_ScGeom_FrictPhys_CundallStrack, NewtonIntegrator, O, utils)
 
 from rockwear.engines import access
+from rockwear.scenes import yade_scene
 
 COUNT, FIRST, CALLS = 600, 300, 200
 
@@ -38,6 +39,8 @@ def replaced():
     for _ in range(CALLS):
         old = access.yade_engine(InsertionSortCollider)
         gone.append(weakref.ref(old))
+        with yade_scene.standing_still():
+            O.step()
         access.put_engines([collider() if engine is old else engine for engine in O.engines])
         del old
         O.step()
