@@ -23,8 +23,6 @@ TILE = 8000
 ORDERED = 3000
 """Particles above which a packing is ordered along a curve: a step of YADE then takes 0.9 to 0.7 of the time
 (calibration/results/scale.md). With fewer no difference is seen."""
-NEVER_TURNS = 1e9
-"""Moment of inertia of particles that do not turn, over their own."""
 SCATTER_LIMITS = 0.05, 5.0
 """Least and largest strength over the mean one where strengths scatter."""
 BORDER, INSIDE = 4.0, 10
@@ -249,10 +247,6 @@ class RockAssembly:
         self.laws = [(inner if inside else scaled)[kind] for kind, inside in zip(kinds, within)]
         if law.yade_law == "Cpm":
             self._clear_overlaps()
-
-    def block_rotation(self):
-        """Make the particles so hard to turn that they never do."""
-        self.inertias = NEVER_TURNS * self.inertias
 
     def _clear_overlaps(self):
         """Reduce radii until no bonded particles overlap; masses stay. YADE's concrete model erases a bond that breaks,

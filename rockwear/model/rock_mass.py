@@ -70,17 +70,14 @@ class RockMass(RockAssembly):
         self.crossing = np.rint((x[i] - x[j]) / width).astype(int)
         self.slab = np.minimum((x / self.slab_length).astype(int), SLABS - 1)
         self.laps = np.zeros(self.count, int)
-        self.absent = self._above_surface(np.arange(self.count))
+        x, y = self.points.T
+        self.absent = y > self.top(x)
         self.passed = 0
         """Slabs that have left the window."""
 
     def top(self, x):
         """Height (m) of the rock's surface at x (m) of the strip."""
         return self.height if self.surface is None else np.interp(x, *self.surface)
-
-    def _above_surface(self, numbers):
-        x, y = self.points[numbers].T
-        return y > self.top(x)
 
     @property
     def points(self):
@@ -164,7 +161,8 @@ class RockMass(RockAssembly):
         """Move the window by a slab. -> numbers (k,) of the particles that left it behind and enter it ahead."""
         moved = np.flatnonzero(self.slab == self.passed % SLABS)
         self.laps[moved] += 1
-        self.absent[moved] = self._above_surface(moved)
+        x, y = self.points[moved].T
+        self.absent[moved] = y > self.top(x)
         self.passed += 1
         return moved
 

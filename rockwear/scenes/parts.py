@@ -18,6 +18,8 @@ from rockwear.scenes.physics import HeatModel, ThermalExpansion, ToolWear
 from rockwear.scenes.tool_assembly import FacetAssembly, ParticleAssembly
 
 HARDNESS = {"MET71": MET71, "MET91": MET91}
+NEVER_TURNS = 1e9
+"""Moment of inertia of particles that do not turn, over their own."""
 
 
 def bond_law(v):
@@ -33,7 +35,7 @@ def bond(rock, v):
     law, values = bond_law(v), vars(v)
     if "bond_law" in values:
         if v.rotation == "blocked":
-            rock.block_rotation()
+            rock.inertias = NEVER_TURNS * rock.inertias
         rock.bond(law, grain_edge=v.grain_edge, within_grains=(v.grain_kn or law.kn, v.grain_kt or law.kt),
                   grain_strength=v.grain_strength, weibull_modulus=v.weibull_modulus, seed=v.seed)
     return rock
