@@ -53,6 +53,18 @@ def test_the_window_holds_each_particle_once_and_moves_by_slabs():
         assert x[moved].min() >= mass.end - mass.slab_length - 1e-12
 
 
+@pytest.mark.parametrize("make", [fresh, bent])
+def test_rock_goes_on_below_the_window_and_beyond_its_ends(make):
+    """There it has no surface that air or water would cool: particles that touch the bottom or an end, no others."""
+    mass = make()
+    for _ in range(3):
+        mass.advance()
+    along, height = mass.strip.unroll(mass.places).T
+    reach = 1.05 * mass.radii / mass.stretch
+    near = (height < reach) | (along - mass.begin < reach) | (mass.end - along < reach)
+    assert np.array_equal(mass.goes_on(), near) and 0.05 < near.mean() < 0.3
+
+
 def test_the_packing_is_as_dense_at_the_seam_as_anywhere(rock):
     """Bonds that cross a vertical line, over many lines: no place stands out."""
     i, j = rock.pairs.T
