@@ -36,7 +36,7 @@ GRAIN_MASK, WALL_MASK = 1, 3
 GRAINS = Group("grains", (
     Parameter("radius_min", 2.25e-3, "m", above_zero, "smallest radius"),
     Parameter("radius_max", 2.75e-3, "m", above_zero, "largest radius"),
-    Parameter("particles", 2000, "", integer(10), "spheres"),
+    Parameter("particles", 2000, "", integer(10, 1_000_000), "spheres"),
     Parameter("seed", 1, "", integer(0), "of radii and first places"),
     Parameter("density", 2500.0, "kg/m3", density, "of the grains themselves, glass or quartz"),
     Parameter("young", 2.5e6, "Pa", plausible(1e4, 1e12), "Young's modulus in Hertz's law, far below that of quartz: "
@@ -47,7 +47,7 @@ GRAINS = Group("grains", (
     Parameter("rolling_resistance", 0.1, "", number(0, 2), "largest moment of a contact over normal force and mean "
               "radius; on a wall, by YADE's law, 1.5 times as much; 0: grains roll freely"),
     Parameter("restitution", 0.7, "", number(0.05, 1), "of a collision, normal and tangential, by dashpots"),
-    Parameter("gravity", 9.81, "m/s2", above_zero, "downwards")))
+    Parameter("gravity", 9.81, "m/s2", plausible(1e-3, 1e4), "downwards")))
 ACCURACY = Group("accuracy", (
     Parameter("time_step_fraction", 0.3, "", number(1e-4, 0.8), "time step over the time of a Rayleigh wave around the "
               "smallest grain, the usual measure for Hertz's law"),

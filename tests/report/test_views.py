@@ -10,7 +10,8 @@ import pytest
 from rockwear.kernels.boundary import prism, segments
 from rockwear.report import bodies, instants, pages, plane, plots
 from rockwear.report.folder import RunFolder
-from rockwear.report.views import density, forces, history, key_results, outlines, speeds, stages, temperature, two_disc
+from rockwear.report.views import (
+    density, forces, granular, history, key_results, outlines, speeds, stages, temperature, two_disc)
 from tests.report.made_up import HEADER, HOT, lattice, make_run
 
 ROOT = Path(__file__).parents[2]
@@ -278,6 +279,15 @@ def test_two_discs_are_drawn_from_their_paths(tmp_path):
     law, points = two_disc.figure(run, "plastic", "tension", "Fn", "un", "").axes[0].lines
     np.testing.assert_allclose(points.get_ydata(), 1e-3 * np.arange(7))
     np.testing.assert_allclose(law.get_xdata(), np.linspace(0, 10, 7))
+
+
+def test_a_tube_is_drawn_to_its_top_where_all_grains_have_fallen_through_the_floor(tmp_path):
+    folder = make_run(tmp_path / "run")
+    change(folder, lambda arrays: {"grain_radii": np.full(5, 1e-3), "tube": np.array([0.02, 0.08, 0.014]),
+                                   "box": np.array([0.044, 0.1, 0.032])},
+           lambda arrays, k: {"time": arrays["time"], "stage": arrays["stage"], "grain_positions": np.full((5, 3), -1.0)})
+    for axes in granular.course_of_tube(RunFolder(folder)).axes:
+        assert axes.get_ylim()[1] == pytest.approx(1.1 * (14 + 10))
 
 
 def test_every_colour_stands_in_the_palette():

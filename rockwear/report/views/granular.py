@@ -108,7 +108,9 @@ def course_of_tube(run):
     width, _, _ = MM * run.model["box"]
     diameter, length, axis = MM * run.model["tube"]
     first = run.snapshot(begin)["grain_positions"][:, 1]
-    top = MM * float(np.nanmax(first)) * 1.1
+    low, high = axis - 0.5 * diameter, axis + 0.5 * diameter
+    # Grains that are too soft fall through the floor.
+    top = 1.1 * max(MM * float(np.nanmax(first)), high)
     figure, panels = grid(len(chosen), 11, top / (width + length))
     for axes, k in zip(panels, chosen):
         places, radii, order = there(run, run.snapshot(k))
@@ -116,7 +118,6 @@ def course_of_tube(run):
         colours = palette.TRAVEL(0.1 + 0.8 * np.clip(MM * first[order] / top, 0, 1))
         discs(axes, places[behind, :2], radii[behind], facecolors=colours[behind], edgecolors=palette.ROCK_EDGE,
               linewidths=0.3)
-        low, high = axis - 0.5 * diameter, axis + 0.5 * diameter
         axes.plot([0, 0, length, length, 0, 0, -width, -width], [top, high, high, low, low, 0, 0, top],
                   color=palette.OUTLINE, linewidth=1)
         axes.set(xlim=(-1.05 * width, 1.03 * length), ylim=(-0.03 * top, top), aspect="equal", title=moment(run, k))
