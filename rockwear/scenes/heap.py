@@ -89,11 +89,13 @@ class Heap(Granular):
         return [self.outflow, self.rest]
 
     def heap(self):
-        """(x (k,) m, heights (k, strips) m, flanks (m, 3)) of kernels.repose, now."""
+        """(x (k,) m, heights (k, strips) m, flanks (m, 3)) of kernels.repose, now; no flanks while all grains are there:
+        the surface is that of the fill then."""
         positions, left = self.positions()
         x, heights = repose.surface(positions, self.grains.radii[left], half_length=self.box.half_length,
                                     half_depth=0.5 * self.box.depth, cell=self.cell)
-        return x, heights, repose.flanks(x, heights, self.box.half_length)
+        fallen = self.outflow.erased > 0
+        return x, heights, repose.flanks(x, heights, self.box.half_length) if fallen else np.empty((0, 3))
 
 
 class HeapOutput(GranularOutput):
@@ -131,7 +133,10 @@ class HeapOutput(GranularOutput):
             found.append(f"the heap is not at rest: its kinetic energy is {self.rest():.2g} of that of a fall by a "
                          "diameter; a longer draining lets it come to rest")
         _, heights, flanks = scene.heap()
-        if not len(flanks):
+        if not scene.outflow.erased:
+            found.append("no grain has fallen past the plate, and there is no angle of repose: a longer draining or a "
+                         "wider opening lets them fall")
+        elif not len(flanks):
             found.append("no flank of the heap is long enough to have a slope: use more particles")
         if scene.stage > 0 and crest_of(heights) > CUT_OFF * scene.v.fill_ratio * scene.box.half_length:
             found.append("the heap is as high as the fill was, and may be cut off: a larger fill_ratio lets it have "

@@ -76,6 +76,13 @@ def test_a_drained_box_leaves_a_heap(heap):
     assert "The heap" in (heap.out / "report.html").read_text(encoding="utf-8")
 
 
+def test_a_box_that_nothing_has_left_has_no_angle_of_repose(tmp_path):
+    done = run(HEAP, tmp_path / "out", **{**BOX, "settling": 0.03, "draining": 1e-4, "report": "false"})
+    assert done.code == 0 and value(done, "grains_left") == BOX["particles"], done.stderr
+    assert math.isnan(value(done, "angle_of_repose")) and value(done, "flanks") == 0
+    assert any(line.startswith("no grain has fallen past the plate") for line in done.summary["warnings"])
+
+
 def test_a_heap_stopped_and_resumed_equals_never_stopped(heap, tmp_path):
     out, options = tmp_path / "out", dict(checkpoint_interval=0.01, report="false")
     stopped = interrupt_script(HEAP, out, signal.SIGTERM, 3, **BOX, **options)
@@ -123,7 +130,9 @@ HEAP_REFUSED = [
     ({"rolling_resistance": -1}, "rolling_resistance = -1: must be at least 0"),
     ({"particles": 60}, "particles = 60: must be more, for a plate of at least 8 diameters"),
     ({"radius_max": 2e-3}, "radius_max = 0.002 m: must be at least radius_min = 0.00225"),
-    ({"restitution": 0}, "restitution = 0: must be at least 0.05")]
+    ({"restitution": 0}, "restitution = 0: must be at least 0.05"),
+    ({"gravity": 1e5}, "gravity = 100000 m/s2: must be between 0.001 and 10000"),
+    ({"particles": "3e9"}, "particles = 3e9: must be a whole number of at most 1000000")]
 TUBE_REFUSED = [
     ({"tube_diameter": 3.9e-3}, "tube_diameter = 0.0039 m: must be more than the largest grain, 0.004"),
     ({"tube_diameter": 0.04}, "tube_diameter = 0.04 m: must be less than"),
