@@ -161,14 +161,18 @@ def read_table(path):
     """{number of the line: {column: text}} of a yade-batch table, by YADE's own reader. Raises ParameterError."""
     from yade.utils import TableParamReader
     try:
-        # YADE's reader drops the last character of every line, also where it is no line break.
-        require(Path(path).read_bytes().endswith(b"\n"), "table", str(path), "closed by a line break")
+        written = Path(path).read_text(encoding="utf-8")
+        # YADE's reader drops the last character of every line, also where it is no line break, and cells beyond the
+        # header.
+        require(written.endswith("\n"), "table", str(path), "closed by a line break")
+        widths = {len(cells) for line in written.split("\n") if (cells := line.partition("#")[0].split())}
+        require(len(widths) == 1, "table", str(path), "a table of yade-batch: a header, then a cell a column in every "
+                "row")
         return TableParamReader(str(path)).paramDict()
     except OSError as error:
         raise ParameterError("table", str(path), f"a file that can be read ({error.strerror})") from None
-    except (IndexError, RuntimeError, UnicodeError):
-        raise ParameterError("table", str(path), "a table of yade-batch: a header, then a cell a column in every row"
-                             ) from None
+    except UnicodeError:
+        raise ParameterError("table", str(path), "a table of yade-batch, in UTF-8") from None
 
 
 def of_row(row):
@@ -199,8 +203,9 @@ def row_names(rows):
 
 
 def file_name(words):
-    """The words as the name of a file or folder: what may not be in one as _."""
-    return "".join(c if c.isalnum() or c in "-_.=," else "_" for c in words)
+    """The words as the name of a file or folder: what may not be in one as _, and so dots alone, which name others."""
+    name = "".join(c if c.isalnum() or c in "-_.=," else "_" for c in words)
+    return name if name.strip(".") else "_"
 
 
 def describe(groups, usage=None):

@@ -209,6 +209,11 @@ def test_help_lists_groups_with_defaults_units_sources_and_conditions(capsys):
     assert max(map(len, words.splitlines())) <= 120
 
 
+@pytest.mark.parametrize("words, name", [("a/b", "a_b"), ("..", "_"), (".", "_"), ("v1.5", "v1.5")])
+def test_a_row_names_a_folder_of_its_own(words, name):
+    assert parameters.file_name(words) == name
+
+
 def test_groups_are_changed_by_name():
     assert [p.name for p in OTHERS.only("seed", "rake")] == ["rake", "seed"]
     assert [p.name for p in HEAT.without("hardness_table", "shank")] == ["heat", "bond_conductance", "convection"]
