@@ -89,8 +89,8 @@ class Heap(Granular):
         return [self.outflow, self.rest]
 
     def heap(self):
-        """(x (k,) m, heights (k, strips) m, flanks (m, 3)) of kernels.repose, now; no flanks while all grains are there:
-        the surface is that of the fill then."""
+        """(x (k,) m, heights (k, strips) m, flanks (m, 3)) of kernels.repose, now; no flanks while all grains are
+        there: the surface is that of the fill then."""
         positions, left = self.positions()
         x, heights = repose.surface(positions, self.grains.radii[left], half_length=self.box.half_length,
                                     half_depth=0.5 * self.box.depth, cell=self.cell)

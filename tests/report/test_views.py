@@ -285,7 +285,8 @@ def test_a_tube_is_drawn_to_its_top_where_all_grains_have_fallen_through_the_flo
     folder = make_run(tmp_path / "run")
     change(folder, lambda arrays: {"grain_radii": np.full(5, 1e-3), "tube": np.array([0.02, 0.08, 0.014]),
                                    "box": np.array([0.044, 0.1, 0.032])},
-           lambda arrays, k: {"time": arrays["time"], "stage": arrays["stage"], "grain_positions": np.full((5, 3), -1.0)})
+           lambda arrays, k: {"time": arrays["time"], "stage": arrays["stage"],
+                              "grain_positions": np.full((5, 3), -1.0)})
     for axes in granular.course_of_tube(RunFolder(folder)).axes:
         assert axes.get_ylim()[1] == pytest.approx(1.1 * (14 + 10))
 
