@@ -26,11 +26,12 @@ from calibration.fitting.rock_fit import COMMON_SEEDS, exit_code, statistics, ve
 from calibration.fitting.rock_page import allowed, measured, off, shown
 from calibration.fitting.rock_tests import COMMON, DROP, LEAST
 from calibration.fitting.rock_unknowns import Observable
-from calibration.fitting.size_powers import folders, plane_rock
+from calibration.fitting.size_powers import PACKINGS, folders, plane_rock
 from calibration.fitting.surrogate import Problem, Surrogate, solve
 from calibration.laboratory.loading import loading, strength
 from rockwear.kernels.checks import ParameterError, require
-from rockwear.kernels.parameter import Group, Parameter, above_zero, file, integer, number, text, zero_or
+from rockwear.kernels.parameter import Above, Group, Parameter, file, integer, plausible, text, zero_or
+from rockwear.model.rock_file import RADIUS
 from rockwear.run import parameters
 
 SCRIPT, NOTCHED = "yade_scripts/uniaxial_3d.py", "yade_scripts/toughness_3d.py"
@@ -40,6 +41,9 @@ SIDES, NOTCHED_SIDES = {"width": 100 / 3, "height": 50 / 3, "depth": 50 / 3}, {"
 """Over the radius, of a block, which is loaded along its width, and of a notched one."""
 POROSITY, GAP = 0.35, 0.1
 """Of the packings; bonding_gap over the radius."""
+EDGES = 0.9, 6.0
+"""Least and largest edge of grains over the radius: a grain has a sphere of its own, and a notched block three grains.
+"""
 OF_PLANE = ("kn", "kt", "bond_tension", "bond_cohesion", "bond_tension_power", "bond_cohesion_power", "bonding_gap",
             "porosity", "grain_edge", "grain_kn", "grain_kt", "grain_strength")
 """Parameters that do not carry over."""
@@ -62,15 +66,16 @@ changes at once, at most."""
 GROUPS = [
     Group("rock", (
         Parameter("rock", "", "", file, "rock with a part for the plane, a name of the library or a file", "yours"),
-        Parameter("radius", 6e-4, "m", above_zero, "radius of the spheres"),
-        Parameter("bond_shear_energy", 0.0, "J/m2", number(0), "work to break a bond in shear without normal force, "
-                  "over its area, for want of grains that interlock; 0: that of the plane; of cohesive bonds alone"),
-        Parameter("bond_fracture_energy", 0.0, "J/m2", number(0), "work to break a bond in tension over its area; 0: "
-                  "fitted to the toughness, or that of the plane without one; of cohesive bonds alone"),
-        Parameter("grains", 0.0, "", number(0), "mean edge of grains over the radius of the spheres; 0: none"),
+        Parameter("radius", 6e-4, "m", plausible(*RADIUS), "radius of the spheres"),
+        Parameter("bond_shear_energy", 0.0, "J/m2", zero_or(1e-2, 1e6), "work to break a bond in shear without normal "
+                  "force, over its area, for want of grains that interlock; 0: that of the plane; of cohesive bonds "
+                  "alone"),
+        Parameter("bond_fracture_energy", 0.0, "J/m2", zero_or(1e-4, 1e6), "work to break a bond in tension over its "
+                  "area; 0: fitted to the toughness, or that of the plane without one; of cohesive bonds alone"),
+        Parameter("grains", 0.0, "", zero_or(*EDGES), "mean edge of grains over the radius of the spheres; 0: none"),
         Parameter("grain_strength", 0.0, "", zero_or(1, 1e3), "of bonds within a grain over those between grains; 0: "
-                  "grains do not break"))),
-    Group("search", (Parameter("packings", 3, "", integer(2), "packings of each set of tests"),
+                  "grains do not break", when={"grains": Above(0)}))),
+    Group("search", (Parameter("packings", 3, "", PACKINGS, "packings of each set of tests"),
                      Parameter("jobs", 2, "", integer(1), "tests at a time"))),
     Group("output", (Parameter("out", "", "", text, "folder of rock.json, in_space.md and all runs"),))]
 

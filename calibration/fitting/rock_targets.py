@@ -51,8 +51,8 @@ radii it is 6.2, 8.1 and 13.0 for 1.5, 3 and 7 (525 discs, three packings)."""
 FRICTION_FITTED = 1.2
 """Ratio of such strengths to what a rock reaches whose confined strengths ask for little friction in its bonds: 10.9 to
 9.3 at a friction of 0.12, shear over tension of 4.4 and an edge of 1.8 radii (ten packings)."""
-MOST_EDGE = 12.0
-"""Mean radii, edge of grains of which the smallest specimens of a fit hold five."""
+LEAST_EDGE, MOST_EDGE = 1.4, 12.0
+"""Mean radii, edges of grains: each has a disc of its own, and the smallest specimens of a fit hold five."""
 CONFINEMENTS = 0.1, 0.3
 """Confinements over UCS at which a friction angle is fitted."""
 HIGHEST = 1.5
@@ -173,7 +173,9 @@ def targets_of(values):
             f"at least radius_min = {values['radius_min']:g}", "m")
     require(values["radius_max"] <= WIDEST * values["radius_min"], "radius_max", values["radius_max"],
             f"at most {WIDEST:g} times radius_min = {values['radius_min']:g}", "m")
-    most = MOST_EDGE * (values["radius_min"] + values["radius_max"]) / 2
+    least, most = (edge * (values["radius_min"] + values["radius_max"]) / 2 for edge in (LEAST_EDGE, MOST_EDGE))
+    require(values["grain_edge"] <= 0 or values["grain_edge"] >= least, "grain_edge", values["grain_edge"],
+            f"at least {least:.3g}, so that each grain has a disc; 0 for none", "m")
     require(values["grain_edge"] <= most, "grain_edge", values["grain_edge"],
             f"at most {most:.3g}: the smallest specimens of a fit hold five grains then", "m")
     least = FAR * least_toughness(found["tensile_strength"], radius=(values["radius_min"] + values["radius_max"]) / 2)

@@ -39,12 +39,14 @@ SEARCHES = 4
 """Sets of tests at most, before the check."""
 ENOUGH = 0.5
 """Part of what is allowed that the search may miss."""
+PACKINGS = integer(2, 100)
+"""A rule: packings of each set of tests."""
 CHECKED = 20
 """Seeds of the check lie above this, and above those of the search."""
 GROUPS = [Group("rock", (
     Parameter("rock", "", "", file, "rock, a name of the library or a file, of cohesive bonds in the plane", "yours"),
     Parameter("factor", 2.0, "", number(1.5, 10), "how many times coarser and finer the discs are to be"))),
-    Group("search", (Parameter("packings", 5, "", integer(2), "packings of each set of tests"),
+    Group("search", (Parameter("packings", 5, "", PACKINGS, "packings of each set of tests"),
                      Parameter("jobs", 2, "", integer(1), "tests at a time"))),
     Group("output", (Parameter("out", "", "", text, "folder of rock.json, size_powers.md and all runs"),))]
 

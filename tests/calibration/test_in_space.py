@@ -191,6 +191,11 @@ def test_the_check_is_of_packings_that_the_search_has_not_seen(run, monkeypatch,
     (("--rock", "no_such"), "rock = no_such"),
     (("--rock", "bentheim"), "rock = bentheim: must be a rock with a target"),
     (("--rock", "medium_sandstone", "--radius", "0"), "radius = 0"),
+    (("--rock", "medium_sandstone", "--radius", "1e30"), "radius = 1e+30 m: must be between 1e-06 and 0.1"),
+    (("--rock", "medium_sandstone", "--grains", "1e-9"), "grains = 1e-09: must be 0 or between 0.9 and 6"),
+    (("--rock", "medium_sandstone", "--grains", "1e9"), "grains = 1e+09: must be 0 or between 0.9 and 6"),
+    (("--rock", "medium_sandstone", "--grain_strength", "2"), "grain_strength = 2: must be left out with grains = 0"),
+    (("--rock", "medium_sandstone", "--packings", "1e9"), "packings = 1e9: must be a whole number of at most 100"),
     (("--rock", "hawkesbury", "--bond_shear_energy", "500"), "bond_shear_energy = 500 J/m2: must be left out"),
     (("--rock", "medium_sandstone", "--jobs", "1000000"), "jobs = 1000000: must be at most ")])
 def test_what_cannot_be_used_is_refused_in_one_line(run, tmp_path, words, said):

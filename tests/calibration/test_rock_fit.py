@@ -267,6 +267,7 @@ BRITTLE = {"bond_law": "brittle"}
     ({"radius_max": 5e-4}, "radius_max = 0.0005 m: must be at least radius_min = 0.001"),
     ({"grain_edge": -2}, "grain_edge = -2 m: must be at least -1"),
     ({"grain_edge": -0.5}, "grain_edge = -0.5 m: must be -1, 0 or greater than 0"),
+    ({"grain_edge": 1e-9}, "grain_edge = 1e-09 m: must be at least 0.00175, so that each grain has a disc; 0 for none"),
     ({"grain_edge": 1}, "grain_edge = 1 m: must be at most 0.015"), ({"name": ""}, "name = : must be a text"),
     ({"source": " "}, "source =  : must be a text"),
     ({"first_stage": "check"}, "first_stage = check: must be small without start"),
@@ -505,7 +506,7 @@ def test_a_confinement_at_which_discs_would_overlap_is_refused_before_the_first_
 @pytest.mark.parametrize("changes, edge", [
     ({"tensile_strength": 15e6}, 0.0), ({}, 2.25e-3), ({"tensile_strength": 5e6}, 2.75e-3),
     ({"tensile_strength": 6e6}, 2.25e-3), ({"tensile_strength": 6e6, "friction_angle": 40}, 2.75e-3),
-    ({"radius_min": 2e-3, "radius_max": 3e-3}, 4.5e-3), ({"grain_edge": 1e-3}, 1e-3), ({"grain_edge": 0}, 0.0)])
+    ({"radius_min": 2e-3, "radius_max": 3e-3}, 4.5e-3), ({"grain_edge": 2e-3}, 2e-3), ({"grain_edge": 0}, 0.0)])
 def test_grains_are_chosen_by_the_ratio_of_the_strengths_unless_they_are_given(changes, edge):
     words = [word for name, value in {**GIVEN, **changes}.items() for word in (f"--{name}", str(value))]
     values = parameters.read(GROUPS, words)

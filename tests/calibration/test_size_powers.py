@@ -108,6 +108,7 @@ def test_the_check_is_of_packings_that_the_search_has_not_seen(run, monkeypatch,
     ((), "rock = nothing"), (("--rock", "m_sandstone"), "rock = m_sandstone, bond_law = brittle"),
     (("--rock", "no_such"), "rock = no_such"), (("--rock", "medium_sandstone", "--factor", "1"), "factor = 1"),
     (("--rock", "medium_sandstone", "--packings", "1"), "packings = 1"),
+    (("--rock", "medium_sandstone", "--packings", "1e9"), "packings = 1e9: must be a whole number of at most 100"),
     (("--rock", "medium_sandstone", "--jobs", "1000000"), "jobs = 1000000: must be at most ")])
 def test_what_cannot_be_used_is_refused_in_one_line(run, tmp_path, words, said):
     code, shown, wrong = run(*words)
