@@ -1,7 +1,7 @@
 """Wear of a tool of facets: it moves the vertices."""
 import math
-import numpy as np
 
+import numpy as np
 
 from rockwear.engines.base import RunEnded
 from rockwear.engines.facet_contact import SLIP
@@ -46,12 +46,14 @@ class FacetWear(WearEngine):
             return
         areas = self._areas()
         volume = self.work_fraction * self.law.volume(slid, self.hardness_now(slid), areas)
+        if self.reshape:
+            self._check_speed(volume / areas)
+        # What is too fast is not worn: the boundary has not counted it either.
         self.worn += self.at_places(volume)
         if not self.reshape:
             return
         rubbed = slid[SLIP] > 0
         self.receded += float(np.sum(volume[rubbed]**2 / (areas * slid[SLIP])[rubbed]))
-        self._check_speed(volume / areas)
         stored, remeshed = self.contact.elastic_energy(), self.boundary.remeshed
         try:
             moved = self.boundary.wear(volume)
