@@ -53,7 +53,8 @@ def test_without_heat_there_is_no_temperature(tmp_path):
                                  {"alive": False}, {"value": math.nan}, {"value": math.inf}],
                          ids=lambda odd: " ".join(f"{k} {v}" for k, v in odd.items()))
 def test_odd_runs_have_a_page(tmp_path, odd):
-    assert "Key results" in read_page(make_run(tmp_path / "run", **odd))
+    page = read_page(make_run(tmp_path / "run", **odd))
+    assert "Key results" in page and ">nan<" not in page
 
 
 def test_no_numbers_in_the_arrays(tmp_path):

@@ -6,10 +6,15 @@ from rockwear.report.page import Section, beside, folded, percent, quantity, tab
 
 def results(run):
     """Section of every result of summary.json, as shown and as written."""
-    rows = [(words(name), quantity(run.result(name), run.unit(name)), repr(run.result(name)), run.unit(name))
+    rows = [(words(name), quantity(run.result(name), run.unit(name)), _exact(run.result(name)), run.unit(name))
             for name in run.summary.get("results", {})]
     return Section("All results", "Values in SI are those of summary.json, to the last digit.",
                    [folded("Results", table(rows, ("result", "", "SI", "")))])
+
+
+def _exact(value):
+    """Every digit of a value; nothing where it is not known."""
+    return "" if isinstance(value, float) and math.isnan(value) else repr(value)
 
 
 def how_it_was_run(run):
