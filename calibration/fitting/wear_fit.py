@@ -2,7 +2,8 @@
 
     python3 -m calibration.fitting.wear_fit [FILE.csv] [--wear_law pressure] [--out DIR] ...       (--help)
 
-One row for each test: a block pressed with a known force slides over a known distance. The header has `name [unit]`:
+One row for each test: a block pressed with a known force slides over a known distance. Between the cells are commas,
+semicolons or tabs. The header has `name [unit]`:
 
     steel          MET71, MET91, or any name where `hardness` is given
     force          N, kN            area      mm2, cm2, m2         or pressure (Pa, MPa), which has precedence
@@ -15,7 +16,6 @@ with half the last digit as errors. Its depths are differences: 2.0 - 0.4 mm and
 take 10 MPa for 1 HB (option --brinell 1e7); the results of eqs. 6.14 and 6.15 are interchanged there.
 """
 import argparse
-import csv
 import json
 import sys
 from pathlib import Path
@@ -24,6 +24,7 @@ import numpy as np
 
 from calibration import generated
 from calibration.command import Parser
+from calibration.laboratory.strength_table import cells
 from rockwear.kernels.archard import BRINELL, KELVIN, MET71, MET91
 from rockwear.kernels.checks import ParameterError, finite, positive, require
 from rockwear.kernels.wear_fitting import LaboratoryTest
@@ -40,18 +41,17 @@ NEEDED = "distance", "depth"
 
 
 def read(file, brinell=BRINELL):
-    """[{name: SI value}] of a CSV file's rows; errors as "name error". Raises ParameterError with column and line."""
-    try:
-        with open(file, newline="", encoding="utf-8-sig") as lines:
-            reader = csv.DictReader(lines, skipinitialspace=True)
-            rows = [(row, reader.line_num) for row in reader]
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise ParameterError("file", str(file), f"a CSV file that can be read ({error})") from None
-    require(rows, "file", str(file), "a CSV file with a header and at least one row")
-    names = [_name_and_unit(head)[0] for head in reader.fieldnames]
+    """[{name: SI value}] of a CSV file's rows; errors as "name error", and the row's "line". Raises ParameterError with
+    column and line."""
+    found = cells(file, "file")
+    require(len(found) > 1, "file", str(file), "a CSV file with a header and at least one row")
+    (_, heads), *rows = found
+    names = [_name_and_unit(head)[0] for head in heads]
     twice = next((name for name in names if names.count(name) > 1), None)
     require(not twice, f"column {twice}", names.count(twice), "there once")
-    return [_row(row, line, brinell) for row, line in rows]
+    for line, row in rows:
+        require(len(row) == len(heads), f"line {line}", f"{len(row)} cells", f"as long as the header, {len(heads)}")
+    return [_row(dict(zip(heads, row)), line, brinell) for line, row in rows]
 
 
 def _name_and_unit(head):
@@ -60,10 +60,8 @@ def _name_and_unit(head):
 
 
 def _row(row, line, brinell):
-    found = {}
+    found = {"line": line}
     for head, text in row.items():
-        if head is None or text is None:
-            raise ParameterError(f"line {line}", len(row), "as long as the header")
         name, unit = _name_and_unit(head)
         if name == "steel":
             found["steel"] = text.strip()
@@ -127,11 +125,12 @@ def _hardness(row, errors, brinell):
     if "hardness" in row:
         return row["hardness"], errors["hardness"]
     steel, kelvin = row.get("steel", ""), row.get("temperature")
-    require(steel in STEELS, "steel", steel, f"one of {', '.join(STEELS)}, or hardness given")
+    require(steel in STEELS, f"steel in line {row['line']}", steel, f"one of {', '.join(STEELS)}, or hardness given")
     require(kelvin is not None, "temperature", "nothing", "given in every row without a hardness")
     table = STEELS[steel]
     low, high = table.limits
-    require(low <= kelvin <= high, "temperature", kelvin, f"inside the table of {steel}, {low:g} to {high:g}", "K")
+    require(low <= kelvin <= high, f"temperature in line {row['line']}", kelvin,
+            f"inside the table of {steel}, {low:g} to {high:g}", "K")
     error = row.get("temperature error", 0.0)
     ends = table(np.clip([kelvin - error, kelvin + error], low, high))
     value = table(kelvin) * brinell / BRINELL
@@ -170,7 +169,7 @@ def fit(rows, *, law="pressure", mu=0.3, exponent=1.0, modes="", brinell=BRINELL
 def plus_minus(value, uncertainty):
     """A value with its standard error."""
     if not np.isfinite(uncertainty):
-        return f"{value:.5g} (no error known: give errors, or several rows)"
+        return f"{value:.5g} (no error known: give errors, or several rows that differ)"
     part = f" ({100 * uncertainty / value:.1f} %)" if value else ""
     return f"{value:.5g} +- {uncertainty:.2g}{part}"
 
@@ -188,6 +187,8 @@ def lines(found):
         if one["exponent"]:
             yield f"{steel:6s} exponent n = {plus_minus(*one['exponent'])}"
         errors = one["error"]
+        if len(errors) > len(one["fit"].k) and np.isnan(one["fit"].uncertainty).all():
+            yield f"{steel:6s} the scatter of the tests is 0, and no error is known"
         if np.any(errors > 0) and not np.all(errors > 0):
             yield f"{steel:6s} some tests state no error: equal weights, the error of k is their scatter"
         if one["fit"].misfit > 4:
@@ -249,7 +250,8 @@ def _write(folder, found, law):
     try:
         folder.mkdir(parents=True, exist_ok=True)
         text = json.dumps({"wear_law": law, "steels": {steel: {
-            "k": one["fit"].k.tolist(), "uncertainty": _plain(one["fit"].uncertainty), "exponent": one["exponent"],
+            "k": one["fit"].k.tolist(), "uncertainty": _plain(one["fit"].uncertainty),
+            "exponent": one["exponent"] and _plain(one["exponent"]),
             "k_of_each_test": [k for k, _ in one["rows"]],
             "uncertainty_of_each_test": _plain(u for _, u in one["rows"])}
             for steel, one in found.items()}}, indent=1)

@@ -6,7 +6,8 @@ from scipy.optimize import nnls
 
 from rockwear.kernels.checks import not_negative, positive, require
 
-
+ROUND_OFF = 1e-9
+"""Relative deviation of tests that is none."""
 ROUNDS = 4
 """Fits one after the other, each with errors as parts of the depths of the one before."""
 
@@ -57,6 +58,15 @@ def misfit(model, test, error, parameters):
     return float(np.sum(((test.depth - model) / (error * model))**2) / freedom)
 
 
+def _factor(chi2, freedom, known):
+    """Factor on the variances of a fit with this sum of squares: at least 1 where errors are known, else what the tests
+    scatter; nan where they do not."""
+    scatter = chi2 / freedom if freedom else 0.0
+    if known:
+        return max(scatter, 1.0)
+    return scatter if scatter > ROUND_OFF**2 else np.nan
+
+
 def fit_linear(columns, test, error):
     """Least squares for depth = sum k_i column_i, k_i >= 0, weighted by the (m,) relative errors, if known. -> Fit.
 
@@ -78,10 +88,8 @@ def fit_linear(columns, test, error):
         k = nnls(matrix / scale, right)[0] / scale
         depth = columns @ k
     chi2 = float(np.sum((right - matrix @ k)**2))
-    freedom = count - unknown
     variance = np.diag(np.linalg.inv((matrix / scale).T @ (matrix / scale))) / scale**2
-    scatter = chi2 / freedom if freedom else (0.0 if known else np.nan)
-    uncertainty = np.sqrt(variance * (max(scatter, 1.0) if known else scatter))
+    uncertainty = np.sqrt(variance * _factor(chi2, count - unknown, known))
     return Fit(k=k, uncertainty=uncertainty, depth=columns @ k, misfit=misfit(columns @ k, test, error, unknown))
 
 
@@ -106,8 +114,7 @@ def fit_line(power_law, start, test, load):
                 "greater than 0: these tests wear less the higher their pressure over hardness is")
         law = power_law(k=float(np.exp(solution[1])), exponent=float(solution[0]))
     rest = rate * weight - matrix @ solution
-    scatter = (rest @ rest) / (len(x) - 2)
-    spread = np.sqrt(np.diag(np.linalg.inv(matrix.T @ matrix)) * (max(scatter, 1.0) if known else scatter))
+    spread = np.sqrt(np.diag(np.linalg.inv(matrix.T @ matrix)) * _factor(rest @ rest, len(x) - 2, known))
     model = law.k * law.depth_per_k(test)
     return law, Fit(k=np.array([law.k]), uncertainty=np.array([law.k * spread[1]]), depth=model,
                     misfit=misfit(model, test, error, 2)), (law.exponent, float(spread[0]))

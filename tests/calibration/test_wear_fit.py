@@ -79,6 +79,27 @@ def test_an_error_missing_in_a_row_is_said(tmp_path, capsys):
     assert stated > 0 and np.isnan(none)
 
 
+def test_equal_rows_have_no_scatter_and_no_error(tmp_path, capsys):
+    file, out = tmp_path / "mine.csv", tmp_path / "out"
+    file.write_text("pressure [MPa],distance [m],depth [mm],hardness [MPa]\n" + 2 * "10,500,0.3,5000\n",
+                    encoding="utf-8")
+    assert main([str(file), "--out", str(out)]) == 0
+    said = capsys.readouterr().out
+    assert "the scatter of the tests is 0, and no error is known" in said and "+-" not in said
+    stored = json.loads((out / "wear_fit.json").read_text(encoding="utf-8"))
+    assert stored["steels"][""]["uncertainty"] == [None]
+
+
+def test_tables_of_other_programs(tmp_path):
+    """Empty lines before the header, semicolons or tabs between the cells."""
+    file = tmp_path / "mine.csv"
+    text = "pressure [MPa],distance [m],depth [mm],hardness [MPa]\n10,500,0.3,5000\n"
+    for between in ",;\t":
+        file.write_text("\n \n" + text.replace(",", between), encoding="utf-8")
+        (k, _), = fit(read(file))[""]["rows"]
+        assert k == pytest.approx(3e-4)
+
+
 def test_own_steel_by_hardness_and_measured_friction(tmp_path):
     file = tmp_path / "mine.csv"
     lines = [f",{p},{p * 2.5 * 0.4},100,{1e3 * 4.0 * (p / 2000)**1.5 * 100},2000" for p in (5, 10, 20, 30)]
@@ -103,14 +124,17 @@ def test_command_line_leaves_numbers_and_a_figure(tmp_path, capsys):
     ("colour [m]\n1\n", "column colour"),
     ("steel,pressure [Pa],distance [m],depth [mm],temperature [K]\nMET71,x,1,1,400\n",
      "pressure in line 2 = x Pa: must be a number"),
-    ("steel,pressure [Pa],distance [m],depth [mm],temperature [K]\nMET71,1e6,1,1,1400\n", "temperature = 1400 K"),
-    ("steel,pressure [Pa],distance [m],depth [mm],temperature [K]\nX12,1e6,1,1,400\n", "steel = X12"),
+    ("steel,pressure [Pa],distance [m],depth [mm],temperature [K]\nMET71,1e6,1,1,1400\n",
+     "temperature in line 2 = 1400 K"),
+    ("steel,pressure [Pa],distance [m],depth [mm],temperature [K]\nX12,1e6,1,1,400\n", "steel in line 2 = X12"),
     ("steel,pressure [Pa],distance [m],depth [mm],temperature [K]\nMET71,1e6,1,-1,400\n",
      "depth in line 2 = -1 mm: must be greater than 0"),
     ("steel,pressure [Pa],distance [m],depth [mm],temperature [K]\n\nMET71,1e6,0,1,400\n",
      "distance in line 3 = 0 m: must be greater than 0"),
     ("pressure [Pa],distance [m],depth [mm],depth [um],hardness [Pa]\n1e6,1,1,1,5e9\n",
      "column depth = 2: must be there"),
+    ("\n\npressure [Pa];distance [m];depth [mm];hardness [Pa]\n1e6;1;1;5e9;3\n",
+     "line 4 = 5 cells: must be as long as the header, 4"),
     ("force [N],force [N],area [m2],distance [m],depth [mm],hardness [Pa]\n885,1,1,1,1,5e9\n", "column force = 2"),
     ("steel,pressure [Pa],distance [m],depth [mm],temperature [K],depth error [mm]\nMET71,1e6,1,1,400,-0.1\n",
      "depth error in line 2 = -0.1 mm: must be at least 0"),

@@ -102,7 +102,7 @@ def test_the_linear_laws_are_the_rate_of_archard():
 def test_a_law_finds_its_own_k(law):
     fitted, found = law.fit(laboratory(law))
     assert fitted.k == pytest.approx(law.k, rel=1e-12) and type(fitted) is type(law)
-    assert found.uncertainty[0] < 1e-9 * law.k and np.isnan(found.misfit)
+    assert np.isnan(found.uncertainty[0]) and np.isnan(found.misfit)
 
 
 def test_modes_and_exponent_find_themselves():
@@ -111,7 +111,7 @@ def test_modes_and_exponent_find_themselves():
     assert [mode.k for mode in fitted.modes] == pytest.approx([0.004, 2.0], rel=1e-9)
     power = PowerLaw(k=3.3, mu=MU, exponent=1.6)
     fitted, found, (n, u) = PowerLaw(k=1, mu=MU, exponent=1).fit_exponent(laboratory(power))
-    assert (fitted.k, n) == pytest.approx((3.3, 1.6), rel=1e-9) and u < 1e-6
+    assert (fitted.k, n) == pytest.approx((3.3, 1.6), rel=1e-9) and np.isnan(u)
     assert found.depth == pytest.approx(laboratory(power).depth, rel=1e-9)
     # Tests that agree better than they claim leave what they claim.
     exact = laboratory(power, error=0.05)
