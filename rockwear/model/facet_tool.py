@@ -114,10 +114,13 @@ def read_stl(path, *, scale=1.0):
             triangles = np.array(Mesh.from_file(str(path), calculate_normals=False).vectors, float)
     except ImportError:
         raise ParameterError("stl", str(path), "readable: the Debian package python3-stl is missing") from None
-    except (OSError, RuntimeError, ValueError, TypeError, AssertionError) as error:
+    except TypeError:
+        # What numpy-stl says of an empty file.
+        triangles = np.empty((0, 3, 3))
+    except (OSError, RuntimeError, ValueError, AssertionError) as error:
         raise ParameterError("stl", str(path), f"a readable STL file ({str(error).splitlines()[0]})") from None
-    if not len(triangles) or not np.isfinite(triangles).all():
-        raise ParameterError("stl", str(path), "a file of triangles with finite corners")
+    require(len(triangles), "stl", str(path), "a file of triangles: it holds none")
+    require(np.isfinite(triangles).all(), "stl", str(path), "a file of triangles with finite corners")
     points, number = np.unique(triangles.reshape(-1, 3), axis=0, return_inverse=True)
     try:
         return check_boundary(points * scale, number.reshape(-1, 3))

@@ -60,8 +60,9 @@ class CutOutput(Output):
         # Along the direction in which the tool looks, normal to it, and across.
         force = np.append(impulse[:2] @ bodies.pose.rotation, impulse[2])
         force = force / elapsed if elapsed else force
+        # 0.0 - x is never -0.0: a tool that meets nothing has a force of 0.
         columns = {"time": (scene.time, "s"), "stage": (scene.stage, "-"), **scene.programme.log(),
-                   "cutting_force": (-force[0], unit), "thrust_force": (force[1], unit)}
+                   "cutting_force": (0.0 - force[0], unit), "thrust_force": (force[1], unit)}
         if not scene.in_plane:
             columns["side_force"] = force[2], unit
         columns["tool_work"] = contact.work_done, joule

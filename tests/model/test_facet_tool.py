@@ -62,6 +62,13 @@ def test_unreadable_files_are_refused(content, tmp_path):
     assert "\n" not in str(caught.value)
 
 
+@pytest.mark.parametrize("content", [b"", b"solid x\nendsolid x\n", b"\0" * 84])
+def test_a_file_without_a_triangle_is_said_to_hold_none(content, tmp_path):
+    (tmp_path / "tooth.stl").write_bytes(content)
+    with pytest.raises(ParameterError, match="tooth.stl: must be a file of triangles: it holds none$"):
+        read_stl(tmp_path / "tooth.stl")
+
+
 def test_a_segment_in_yade_is_a_triangle_whose_nearest_point_lies_in_the_plane():
     vertices, facets = np.array([[0, 0], [1, 0.5], [0.2, 2]]) * 1e-3, np.array([[0, 1], [1, 2], [2, 0]])
     chance = np.random.default_rng(0)

@@ -192,6 +192,12 @@ def test_wear_too_fast_for_the_shape_ends_with_what_to_change(tmp_path):
     assert mass["archard"] == pytest.approx(7830 * value(run, "worn_volume"), rel=1e-9, abs=0)
 
 
+def test_a_tool_that_meets_nothing_has_a_force_of_zero_without_a_sign(tmp_path):
+    run = cut(tmp_path / "out", start_up=1e-5, cycles=0, record_period=1e-6, report="false")
+    assert run.code == 0, run.stderr
+    assert math.copysign(1, value(run, "peak_cutting_force")) == 1 and value(run, "peak_cutting_force") == 0
+
+
 REFUSED = [
     ({"heat": "true", "thermal_radius": 0}, "thermal_radius = 0 m: must be greater than 0"),
     ({"sampling_period": 2}, "sampling_period = 2 steps: must be 1"),
