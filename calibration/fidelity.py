@@ -165,9 +165,10 @@ def entered(ours, given):
     values = np.array([run.result(given.result) for run in runs])
     require(np.isfinite(values).all(), "result", given.result, "a finite number in each summary.json")
     seconds = sum(run.summary["wall_time"]["total"] for run in runs)
-    result = {"row": given.enter, "run": name, "value": float(values.mean()), "packings": len(values)}
+    mean, error = map(float, generated.mean_and_error(values))
+    result = {"row": given.enter, "run": name, "value": mean, "packings": len(values)}
     if len(values) > 1:
-        result["error"] = float(values.std(ddof=1) / math.sqrt(len(values)))
+        result["error"] = error
     if given.set:
         result["set"] = given.set
     kept = [old for old in ours["results"] if old["run"] != name]

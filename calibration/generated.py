@@ -77,9 +77,10 @@ def table(columns, rows):
 
 
 def mean_and_error(values):
-    """(mean, standard error) of (n,) numbers; nan for the error of one."""
+    """(mean, standard error) of (n,) numbers; nan for the error of one, and for both of none."""
     values = np.asarray(values, float)
-    return values.mean(), values.std(ddof=1) / math.sqrt(len(values)) if len(values) > 1 else math.nan
+    return (values.mean() if len(values) else math.nan,
+            values.std(ddof=1) / math.sqrt(len(values)) if len(values) > 1 else math.nan)
 
 
 def mean_cell(values):

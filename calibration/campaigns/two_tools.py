@@ -5,7 +5,6 @@
 Reads run folders of yade_scripts/tooth_cycles.py with --tool particles and --tool segments, several seeds each, draws
 the figure and writes a table of the same name (.md) beside it. calibration/results/facet_tools.md states the result.
 """
-import math
 import sys
 
 import matplotlib
@@ -68,9 +67,7 @@ def grouped(runs):
 
 def scatter(values):
     """(mean, standard error) of the finite values; nan where there are too few."""
-    values = np.asarray(values)[np.isfinite(values)]
-    return (np.mean(values) if len(values) else math.nan,
-            np.std(values, ddof=1) / len(values)**0.5 if len(values) > 1 else math.nan)
+    return generated.mean_and_error(np.asarray(values)[np.isfinite(values)])
 
 
 def figure(groups):

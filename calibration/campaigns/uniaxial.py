@@ -138,9 +138,9 @@ def slope_cases():
 def mean_and_error(rows, case):
     """{quantity: (mean, standard error)} of a case, in the units of MEASURED_ROCK."""
     def of(test, name, scale):
-        values = [row[name] for row in rows if (row["case"], row["test"]) == (case, test)]
-        mean, deviation, count = tables.statistics(values, scale) if values else (math.nan, math.nan, 1)
-        return mean, deviation / math.sqrt(count) if count > 1 else 0.0
+        values = [scale * row[name] for row in rows if (row["case"], row["test"]) == (case, test)]
+        mean, error = generated.mean_and_error(values)
+        return mean, error if len(values) > 1 else 0.0
 
     strong, weak = of("compression", "peak_stress", 1e-6), of("tension", "peak_stress", 1e-6)
     ratio = strong[0] / weak[0]

@@ -56,18 +56,12 @@ def alike(first, second):
     return float(np.corrcoef(first.ravel(), second.ravel())[0, 1])
 
 
-def statistics(rows, scale=1.0):
-    """(mean, standard deviation, number) of values."""
-    values = scale * np.array(rows)
-    return values.mean(), values.std(ddof=1) if len(values) > 1 else math.nan, len(values)
-
-
 def shown(values, scale=1.0, digits=1):
     """Mean ± standard deviation."""
     if not values:
         return "–"
-    mean, deviation, count = statistics(values, scale)
-    return f"{mean:.{digits}f}" + (f" ± {deviation:.{digits}f}" if count > 1 else "")
+    values = scale * np.array(values)
+    return f"{values.mean():.{digits}f}" + (f" ± {values.std(ddof=1):.{digits}f}" if len(values) > 1 else "")
 
 
 def strengths(rows):
@@ -99,8 +93,8 @@ def against(rows, reference):
         change = [100 * (row["peak_stress"] / base[row["seed"]] - 1) for row in rows
                   if row["case"] == case and row["test"] == TESTS[0] and row["seed"] in base]
         if len(change) > 1 and case != reference:
-            mean, deviation, count = statistics(change)
-            lines.append([case, f"{mean:+.1f} ± {deviation / math.sqrt(count):.1f}"])
+            mean, error = generated.mean_and_error(change)
+            lines.append([case, f"{mean:+.1f} ± {error:.1f}"])
     return generated.table(["case", f"UCS against {reference} on the same packing, % ± standard error"], lines)
 
 
