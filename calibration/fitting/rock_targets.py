@@ -173,12 +173,12 @@ def targets_of(values):
             f"at least radius_min = {values['radius_min']:g}", "m")
     require(values["radius_max"] <= WIDEST * values["radius_min"], "radius_max", values["radius_max"],
             f"at most {WIDEST:g} times radius_min = {values['radius_min']:g}", "m")
-    least, most = (edge * (values["radius_min"] + values["radius_max"]) / 2 for edge in (LEAST_EDGE, MOST_EDGE))
-    require(values["grain_edge"] <= 0 or values["grain_edge"] >= least, "grain_edge", values["grain_edge"],
-            f"at least {least:.3g}, so that each grain has a disc; 0 for none", "m")
-    require(values["grain_edge"] <= most, "grain_edge", values["grain_edge"],
-            f"at most {most:.3g}: the smallest specimens of a fit hold five grains then", "m")
-    least = FAR * least_toughness(found["tensile_strength"], radius=(values["radius_min"] + values["radius_max"]) / 2)
+    radius, edge = (values["radius_min"] + values["radius_max"]) / 2, values["grain_edge"]
+    require(edge <= 0 or edge >= LEAST_EDGE * radius, "grain_edge", edge,
+            f"at least {LEAST_EDGE * radius:.3g}, so that each grain has a disc; 0 for none", "m")
+    require(edge <= MOST_EDGE * radius, "grain_edge", edge,
+            f"at most {MOST_EDGE * radius:.3g}: the smallest specimens of a fit hold five grains then", "m")
+    least = FAR * least_toughness(found["tensile_strength"], radius=radius)
     require(found.get("fracture_toughness", least) >= least, "fracture_toughness", values["fracture_toughness"],
             f"at least {least:.3g}, half of what the most brittle bonds have at these radii", "Pa sqrt(m)")
     within("porosity", values["porosity"], *POROSITY_LIMITS[2])
