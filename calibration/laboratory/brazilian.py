@@ -11,11 +11,11 @@ from rockwear.engines import access
 from rockwear.engines.bonds import INTACT
 from rockwear.kernels import brazilian
 from rockwear.kernels.checks import require
-from rockwear.kernels.parameter import Parameter, above_zero, number
+from rockwear.kernels.parameter import Parameter, length, number
 from rockwear.model.rock import CutOut
 
 GROUPS = groups(
-    Parameter("diameter", 0.05, "m", above_zero, "of the disc", "(ISRM 1978): 54 mm"),
+    Parameter("diameter", 0.05, "m", length, "of the disc", "(ISRM 1978): 54 mm"),
     Parameter("loading_angle", 20.0, "deg", number(1, 60), "of the arc over which each platen holds the rim",
               "measured, calibration/results/laboratory.md; (ISRM 1978): 10"),
     without=("width", "height"), test=lambda values: "brazilian", gauge=0.25, speed=0.02, strain_max=0.05)

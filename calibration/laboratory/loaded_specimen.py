@@ -22,7 +22,7 @@ from rockwear.engines.rock_friction import RockFriction
 from rockwear.engines.separation import Separation
 from rockwear.engines.velocity_increment import VelocityIncrement
 from rockwear.kernels.checks import require
-from rockwear.kernels.parameter import Group, Parameter, above_zero, choice, number, speed
+from rockwear.kernels.parameter import Group, Parameter, above_zero, choice, length_or_zero, number, speed
 from rockwear.kernels.stability import critical_time_step
 from rockwear.model.contact import PLANE, SPACE
 from rockwear.model.rock import Block, Specimen
@@ -36,7 +36,7 @@ from rockwear.scenes.scene import Scene
 LOADING = (
     Parameter("speed", 0.05, "m/s", speed, "of each platen", "make bench; [Rojek 2003, 5.1] has 0.001"),
     Parameter("platens", "smooth", "", choice("smooth", "rough"), "rough: ends held across and against turning"),
-    Parameter("grip", 0.0, "m", number(0), "particles with their centres so near an end move with it; 0: a "
+    Parameter("grip", 0.0, "m", length_or_zero, "particles with their centres so near an end move with it; 0: a "
               "largest diameter"),
     Parameter("damping", 0.3, "", number(0, 0.95), "Cundall's non-viscous damping", "measured, see UniaxialTest"),
     Parameter("gauge", 0.5, "", number(0.05, 1), "middle part of length and height in which strain is measured"),

@@ -17,7 +17,8 @@ from rockwear.engines.velocity_increment import VelocityIncrement
 from rockwear.engines.wear import Wear
 from rockwear.kernels.archard import BRINELL, KELVIN, Hardness
 from rockwear.kernels.checks import require
-from rockwear.kernels.parameter import Group, Parameter, above_zero, choice, integer, number, speed
+from rockwear.kernels.parameter import (
+    Group, Parameter, above_zero, choice, integer, length, length_or_zero, number, speed)
 from rockwear.kernels.rigid_motion import Straight
 from rockwear.kernels.wear_laws import WEAR_LAWS
 from rockwear.model.materials import STEEL
@@ -32,20 +33,20 @@ from rockwear.scenes.tool_bodies import ToolBodies
 TEST = Group("test", (
     Parameter("force", 885.0, "N", above_zero, "normal force on the block", "[Rojek 2003, table 6.2]"),
     Parameter("area", 26e-6, "m2", above_zero, "contact surface of the block", "[Rojek 2003, table 6.2]"),
-    Parameter("distance", 100.0, "m", above_zero, "sliding distance in the laboratory", "[Rojek 2003, table 6.2]"),
+    Parameter("distance", 100.0, "m", length, "sliding distance in the laboratory", "[Rojek 2003, table 6.2]"),
     Parameter("velocity", 0.117, "m/s", speed, "sliding velocity", "[Rojek 2003, table 6.2]"),
     Parameter("temperature", 429.15, "K", number(0), "of the block at first", "[Rojek 2003, table 6.2]: 156 deg C"),
     Parameter("temperature_rise", 0.0, "K", number(0), "of the block over the whole distance, linear in it"),
-    Parameter("block_width", 0.0, "m", number(0), "of the block along the sliding; 0: side of a square of `area`"),
-    Parameter("block_height", 6e-3, "m", above_zero, "of the block"),
+    Parameter("block_width", 0.0, "m", length_or_zero, "of the block along the sliding; 0: side of a square of `area`"),
+    Parameter("block_height", 6e-3, "m", length, "of the block"),
     Parameter("packing", "random", "", choice("random", "lattice"), "of the block's particles"),
     Parameter("seed", 1, "", integer(0), "of a random packing"),
-    Parameter("tool_radius_min", 0.2e-3, "m", above_zero, "smallest radius of the block's particles"),
-    Parameter("tool_radius_max", 0.26e-3, "m", above_zero, "largest radius of the block's particles")))
+    Parameter("tool_radius_min", 0.2e-3, "m", length, "smallest radius of the block's particles"),
+    Parameter("tool_radius_max", 0.26e-3, "m", length, "largest radius of the block's particles")))
 ACCURACY = Group("accuracy", (
-    Parameter("slip_step", 2e-6, "m", above_zero, "sliding in a time step", "ours, see SlidingWear"),
+    Parameter("slip_step", 2e-6, "m", length, "sliding in a time step", "ours, see SlidingWear"),
     Parameter("wear_period", 10, "steps", integer(1), "between updates of wear and removal"),
-    Parameter("record_distance", 0.5, "m", above_zero, "laboratory distance between rows of history.csv")))
+    Parameter("record_distance", 0.5, "m", length, "laboratory distance between rows of history.csv")))
 GROUPS = parameters.with_defaults(
     [TEST, parameters.CONTACT.without("contact_damping"),
      parameters.WEAR.without("hardness", "hardness_temperature", "wear_tolerance", "tool_temperature"), ACCURACY],

@@ -6,10 +6,10 @@ import numpy as np
 from calibration.laboratory.loaded_specimen import IN_SPACE, SpecimenOutput, SpecimenTest, groups
 from rockwear.kernels import fracture
 from rockwear.kernels.checks import require
-from rockwear.kernels.parameter import Parameter, above_zero, number
+from rockwear.kernels.parameter import Parameter, length, number
 
 OWN = (
-    Parameter("size", 0.08, "m", above_zero, "W, from the load line to the back; the specimen is 1.2 W x 1.25 W",
+    Parameter("size", 0.08, "m", length, "W, from the load line to the back; the specimen is 1.2 W x 1.25 W",
               "ASTM E399"),
     Parameter("notch", 0.4, "", number(fracture.SHORTEST, 0.8), "length of the notch over W", "measured"))
 BY_SIZE = "width", "height", "grip", "gauge", "platens"

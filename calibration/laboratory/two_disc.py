@@ -12,7 +12,7 @@ import yade
 from rockwear import __version__, report
 from rockwear.kernels.bond_laws import BOND_LAWS
 from rockwear.kernels.checks import ParameterError
-from rockwear.kernels.parameter import Group, Parameter, above_zero, integer, text
+from rockwear.kernels.parameter import Group, Parameter, integer, length, text
 from rockwear.run import parameters, servers
 from rockwear.scenes.parameters import BONDS
 from rockwear.scenes.two_disc import drive_pair, programme
@@ -23,7 +23,7 @@ GROUPS = [
         kn=2e10, kt=2e10, Rn=1e5, Rt=1e5, H=1e10, bond_tension=1e5, bond_cohesion=1e5, bond_fracture_energy=0.75,
         mu=0.839),
     Group("test", (
-        Parameter("radius", 1.25e-3, "m", above_zero, "of both discs"),
+        Parameter("radius", 1.25e-3, "m", length, "of both discs"),
         Parameter("steps", 403, "", integer(10), "points on the longest leg of a path"))),
     Group("output", (
         Parameter("out", "", "", text, "folder of the results; out/two_disc when empty, a subfolder a row in a "

@@ -24,6 +24,9 @@ def finite(name, value, unit=""):
         number = float(value)
     except (TypeError, ValueError):
         raise ParameterError(name, value, "a number", unit) from None
+    except OverflowError:
+        # An integer of more digits than a float can have.
+        number = math.inf
     require(math.isfinite(number), name, number, "finite", unit)
     return number
 

@@ -26,11 +26,11 @@ def grains(positions, *, volume, edge, seed, period=None):
     positive("grain_edge", edge, "m")
     positions = np.asarray(positions, float)
     n, d = positions.shape
-    count = round(volume / (CELL[d] * edge**d))
     smallest = (volume / n / CELL[d])**(1 / d)
     largest = (volume / 3 / CELL[d])**(1 / d)
-    require(count >= 3, "grain_edge", edge, f"at most {largest:.3g}: a rock of three grains", "m")
-    require(count <= n, "grain_edge", edge, f"at least {smallest:.3g}: a particle a grain; 0 for none", "m")
+    require(edge <= largest, "grain_edge", edge, f"at most {largest:.3g}: a rock of three grains", "m")
+    require(edge >= smallest, "grain_edge", edge, f"at least {smallest:.3g}: a particle a grain; 0 for none", "m")
+    count = round(volume / (CELL[d] * edge**d))
     rng = np.random.default_rng([seed, n])
     seeds = positions[rng.choice(n, count, replace=False)]
     for _ in range(RELAXATIONS):

@@ -52,6 +52,10 @@ speed = plausible(1e-9, 1e5)
 """A rule: m/s."""
 duration = plausible(1e-12, 1e8)
 """A rule: s, up to three years."""
+length = plausible(1e-9, 1e6)
+"""A rule: m, of a particle as of a sliding distance."""
+length_or_zero = zero_or(1e-9, 1e6)
+"""A rule: m, as `length`, or 0."""
 
 
 def integer(low, high=None):

@@ -21,13 +21,13 @@ from rockwear.engines.base import RunEnded
 from rockwear.engines.history import write_table
 from rockwear.kernels.checks import ParameterError, require
 from rockwear.kernels.files import naming, replacing, write_arrays
-from rockwear.kernels.parameter import Group, Parameter, above_zero, file, flag, text
+from rockwear.kernels.parameter import Group, Parameter, duration, file, flag, text
 
 COMMON = Group("output", (
     Parameter("out", "", "", text, "folder of the results; out/SCENE when empty, a subfolder a row in a batch"),
     Parameter("resume", False, "", flag, "resume from the checkpoint in the folder"),
-    Parameter("checkpoint_interval", 60.0, "s", above_zero, "wall time between checkpoints"),
-    Parameter("snapshot_period", 4e-4, "s", above_zero, "simulated time between the pictures of the report"),
+    Parameter("checkpoint_interval", 60.0, "s", duration, "wall time between checkpoints"),
+    Parameter("snapshot_period", 4e-4, "s", duration, "simulated time between the pictures of the report"),
     Parameter("report", True, "", flag, "write report.html and its figures at the end"),
     Parameter("vtk", False, "", flag, "write each snapshot for ParaView too"),
 ))

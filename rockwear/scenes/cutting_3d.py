@@ -7,7 +7,7 @@ from scipy.spatial import ConvexHull
 
 from rockwear.kernels.boundary import area_vectors, prism, refine
 from rockwear.kernels.checks import require
-from rockwear.kernels.parameter import Group, Parameter, number
+from rockwear.kernels.parameter import Group, Parameter, length_or_zero, number
 from rockwear.kernels.polygon import area, perimeter, tip
 from rockwear.model.contact import SPACE
 from rockwear.model.facet_tool import MOST_FACETS, FacetTool, check_size, read_stl
@@ -20,7 +20,7 @@ from rockwear.scenes.physics import Gravity
 from rockwear.scenes.programme import LowerAndCut
 from rockwear.scenes.tool_assembly import FacetAssembly, ParticleAssembly
 
-SNAPSHOT = Group("output", (Parameter("snapshot_period", 0.05, "s", parameters.above_zero,
+SNAPSHOT = Group("output", (Parameter("snapshot_period", 0.05, "s", parameters.duration,
                                       "simulated time between the pictures "
                                       "of the report"),))
 GROUPS = parameters.with_defaults(
@@ -35,7 +35,7 @@ GROUPS = parameters.with_defaults(
 SETTLING = (
     Parameter("settling", 0.4, "s", parameters.duration, "time for the fill to settle under gravity"),
     Parameter("settling_damping", 50.0, "1/s", number(0), "background damping while it settles"),
-    Parameter("freeboard", 0.06, "m", number(0), "how far the box's sides stand above the fill"))
+    Parameter("freeboard", 0.06, "m", length_or_zero, "how far the box's sides stand above the fill"))
 LOOSE_GROUPS = [
     {"bonds": parameters.LOOSE, "motion": Group("motion", (*group.parameters, *SETTLING))}.get(group.title, group)
     for group in parameters.given(GROUPS, heat=False)]

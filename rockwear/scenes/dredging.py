@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 
 from rockwear.kernels.checks import require
-from rockwear.kernels.parameter import Fixed, Group, Parameter, above_zero, duration, flag, integer, number
+from rockwear.kernels.parameter import Fixed, Group, Parameter, above_zero, duration, flag, integer, length, number
 from rockwear.kernels.polygon import nearest_on_edges
 from rockwear.kernels.rigid_motion import SwingAndRotation
 from rockwear.kernels.strip import ArcStrip
@@ -27,20 +27,20 @@ WITHOUT = {"width", "height", "grading_factor", "fine_depth", "velocity", "depth
 ROCK = (
     Parameter("full", False, "", flag, "the defaults of scale_factor, backing and window that give the source's 92,000 "
               "discs", presets=Fixed(scale_factor=1.0, backing=0.436, window=False)),
-    Parameter("backing", 0.06, "m", above_zero, "rock behind the path of the pick, fixed at its far side"),
+    Parameter("backing", 0.06, "m", length, "rock behind the path of the pick, fixed at its far side"),
     Parameter("window", True, "", flag, "rock only near the tip, in a window that moves along with the pick; false: "
               "all rock along the path is there from the start"),
-    Parameter("window_behind", 0.12, "m", above_zero, "length of the window behind the tip", when={"window": (True,)}),
-    Parameter("window_ahead", 0.14, "m", above_zero, "its length ahead of the tip", when={"window": (True,)}),
-    Parameter("run_out", 0.06, "m", above_zero, "rock ahead of the pick at the end of the cut",
+    Parameter("window_behind", 0.12, "m", length, "length of the window behind the tip", when={"window": (True,)}),
+    Parameter("window_ahead", 0.14, "m", length, "its length ahead of the tip", when={"window": (True,)}),
+    Parameter("run_out", 0.06, "m", length, "rock ahead of the pick at the end of the cut",
               when={"window": (False,)}),
     Parameter("scale_factor", 4.0, "", number(1, 10), "factor on the radii of rock and, for the same macroscopic "
               "strength, on the strengths of its bonds; 1: the source's"))
 MOTION = (
-    Parameter("feed", 0.06, "m", above_zero, "swing between two picks on the same track; the free surface of the rock "
+    Parameter("feed", 0.06, "m", length, "swing between two picks on the same track; the free surface of the rock "
               "is the path of the pick before, and the chip feed x sin(angle) thick",
               "ours: [Rojek 2014] has a figure only"),
-    Parameter("cutter_radius", 0.7, "m", above_zero, "distance of the tip from the axis of rotation",
+    Parameter("cutter_radius", 0.7, "m", length, "distance of the tip from the axis of rotation",
               "[Rojek 2014, 5.1]"),
     Parameter("angular_velocity", 1.6204, "rad/s", above_zero, "of the cutter head", "[Rojek 2014, 5.1]"),
     Parameter("swing", 0.2, "m/s", number(0), "velocity of the cutter head", "[Rojek 2014, 5.1]"),
@@ -49,8 +49,8 @@ MOTION = (
     Parameter("cut_time", 0.65, "s", duration, "of cutting in a turn", "[Rojek 2014, 5.3]"),
     Parameter("cycles", 3, "", integer(1, parameters.MOST_CYCLES),
               "turns, each a cut into fresh rock and cooling in water", "[Rojek 2014, 5.3]"),
-    Parameter("cooling_period", 0.01, "s", above_zero, "between steps while the pick cools"))
-OUTPUT = Group("output", (Parameter("snapshot_period", 0.05, "s", above_zero, "between the pictures of the report"),))
+    Parameter("cooling_period", 0.01, "s", duration, "between steps while the pick cools"))
+OUTPUT = Group("output", (Parameter("snapshot_period", 0.05, "s", duration, "between the pictures of the report"),))
 
 
 def groups():

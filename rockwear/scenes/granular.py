@@ -14,7 +14,8 @@ from rockwear.engines.energy_guard import EnergyGuard
 from rockwear.engines.grain_contacts import GrainContacts
 from rockwear.engines.recorder import Recorder
 from rockwear.kernels.checks import require
-from rockwear.kernels.parameter import Group, Parameter, above_zero, density, duration, integer, number, plausible
+from rockwear.kernels.parameter import (
+    Group, Parameter, above_zero, density, duration, integer, length, number, plausible)
 from rockwear.run import vtk
 from rockwear.scenes.balances import with_residual
 from rockwear.scenes.output import Output
@@ -34,8 +35,8 @@ GRAIN_MASK, WALL_MASK = 1, 3
 """Bodies meet where masks share a bit; bit 2 is avoided between what is fixed."""
 
 GRAINS = Group("grains", (
-    Parameter("radius_min", 2.25e-3, "m", above_zero, "smallest radius"),
-    Parameter("radius_max", 2.75e-3, "m", above_zero, "largest radius"),
+    Parameter("radius_min", 2.25e-3, "m", length, "smallest radius"),
+    Parameter("radius_max", 2.75e-3, "m", length, "largest radius"),
     Parameter("particles", 2000, "", integer(10, 1_000_000), "spheres"),
     Parameter("seed", 1, "", integer(0), "of radii and first places"),
     Parameter("density", 2500.0, "kg/m3", density, "of the grains themselves, glass or quartz"),
@@ -51,7 +52,7 @@ GRAINS = Group("grains", (
 ACCURACY = Group("accuracy", (
     Parameter("time_step_fraction", 0.3, "", number(1e-4, 0.8), "time step over the time of a Rayleigh wave around the "
               "smallest grain, the usual measure for Hertz's law"),
-    Parameter("record_period", 0.01, "s", above_zero, "between rows of history.csv")))
+    Parameter("record_period", 0.01, "s", duration, "between rows of history.csv")))
 SETTLING = Parameter("settling", 0.25, "s", duration, "time for the grains to fall into the box and come to rest")
 
 

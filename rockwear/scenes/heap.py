@@ -8,7 +8,7 @@ from rockwear.engines.outflow import Outflow
 from rockwear.engines.rest import Rest
 from rockwear.kernels import repose
 from rockwear.kernels.checks import require
-from rockwear.kernels.parameter import Group, Parameter, above_zero, choice, duration, number
+from rockwear.kernels.parameter import Group, Parameter, choice, duration, number
 from rockwear.model.granular import DrainedBox, poured
 from rockwear.scenes.granular import ACCURACY, AT_REST, GRAINS, SETTLING, Granular, GranularOutput, check_radii
 
@@ -33,7 +33,7 @@ GROUPS = [
         SETTLING,
         Parameter("draining", 2.0, "s", duration, "longest time for the heap to form; it ends once all is at rest"))),
     ACCURACY,
-    Group("output", (Parameter("snapshot_period", 0.05, "s", above_zero, "simulated time between the pictures"),))]
+    Group("output", (Parameter("snapshot_period", 0.05, "s", duration, "simulated time between the pictures"),))]
 
 
 def make(values):

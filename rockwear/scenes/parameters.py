@@ -6,8 +6,8 @@ from rockwear.kernels.conduction import PATHS
 from rockwear.kernels.density import LEAST_RATIO, MOST_RATIO
 from rockwear.kernels.erosion import REMOVAL
 from rockwear.kernels.parameter import (
-    Above, Fixed, Group, Parameter, above_zero, choice, density, duration, file, flag, integer, law_parameters, number,
-    speed, stiffness, text, zero_or)
+    Above, Fixed, Group, Parameter, above_zero, choice, density, duration, file, flag, integer, law_parameters, length,
+    length_or_zero, number, plausible, speed, stiffness, text, zero_or)
 from rockwear.kernels.wear_laws import WEAR_LAWS
 from rockwear.model.materials import SANDSTONE, STEEL
 from rockwear.model.rock_file import RockPresets
@@ -22,21 +22,21 @@ PARAMETRIC = {"outline": ("",), "stl": ("",)}
 # ---- rock
 
 SPECIMEN = Group("rock", (
-    Parameter("width", 0.109, "m", above_zero, "width of the specimen", "[Rojek 2003, 5.1]"),
-    Parameter("height", 0.109, "m", above_zero, "height of the specimen", "[Rojek 2003, 5.1]"),
-    Parameter("radius_min", 1e-3, "m", above_zero, "smallest radius of rock particles", "[Rojek 2003, 5.1]"),
-    Parameter("radius_max", 1.5e-3, "m", above_zero, "largest radius of rock particles", "[Rojek 2003, 5.1]"),
+    Parameter("width", 0.109, "m", length, "width of the specimen", "[Rojek 2003, 5.1]"),
+    Parameter("height", 0.109, "m", length, "height of the specimen", "[Rojek 2003, 5.1]"),
+    Parameter("radius_min", 1e-3, "m", length, "smallest radius of rock particles", "[Rojek 2003, 5.1]"),
+    Parameter("radius_max", 1.5e-3, "m", length, "largest radius of rock particles", "[Rojek 2003, 5.1]"),
     Parameter("porosity", 0.12, "", number(0), "1 - sum of particle areas over the box's area", "[Rojek 2014, 5.2]"),
     Parameter("seed", 1, "", integer(0), "of the packings of rock and tool"),
     Parameter("grading_factor", 1.0, "", number(1, 8), "factor by which radii grow below fine_depth; 1: uniform rock"),
-    Parameter("fine_depth", 0.035, "m", above_zero, "depth that keeps the fine particles"),
+    Parameter("fine_depth", 0.035, "m", length, "depth that keeps the fine particles"),
     Parameter("rock_density", SANDSTONE.density, "kg/m3", density, "bulk density of the rock", "[Rojek 2003, 7.4]")))
 
 BLOCK = Group("rock", (
-    Parameter("width", 0.62, "m", above_zero, "length of the block, along the cut"),
-    Parameter("height", 0.22, "m", above_zero, "height of the block"),
-    Parameter("depth", 0.41, "m", above_zero, "depth of the block, across the cut"),
-    Parameter("radius", 9e-3, "m", above_zero, "radius of all rock spheres, before scale_factor", "[Rojek 2003, 13.1]"),
+    Parameter("width", 0.62, "m", length, "length of the block, along the cut"),
+    Parameter("height", 0.22, "m", length, "height of the block"),
+    Parameter("depth", 0.41, "m", length, "depth of the block, across the cut"),
+    Parameter("radius", 9e-3, "m", length, "radius of all rock spheres, before scale_factor", "[Rojek 2003, 13.1]"),
     Parameter("porosity", 0.36, "", number(0), "1 - sum of particle volumes over the block's volume"),
     Parameter("seed", 1, "", integer(0), "of the packings of rock and tool"),
     Parameter("scale_factor", 1.5, "", number(1, 8),
@@ -56,7 +56,7 @@ BOND_PARAMETERS = (
               "of the scatter of bond strengths about their mean; 0: none"),
     Parameter("rotation", "free", "", choice("free", "blocked"), "of the rock's particles; blocked: none ever turns, "
               "they interlock as grains do in the crudest way"),
-    Parameter("grain_edge", 0.0, "m", number(0), "mean edge of grains, Voronoi cells of particles; 0: no grains",
+    Parameter("grain_edge", 0.0, "m", length_or_zero, "mean edge of grains, Voronoi cells of particles; 0: no grains",
               "[Bahaaddini 2018, sec. 2]", size_power=(1, 1)),
     Parameter("grain_strength", 0.0, "", zero_or(1, 1e3), "strengths of bonds within a grain over those between "
               "grains; 0: grains do not break", "0: [Bahaaddini 2018, sec. 2]", OF_GRAINS),
@@ -84,14 +84,14 @@ LOOSE = Group("bonds", (rock_parameter(only=("kn", "kt", "mu", "rock_density")),
 # ---- tool
 
 OUTLINE = (
-    Parameter("tooth_height", 0.07, "m", above_zero, "height of the tooth", "ours: the sources show it in figures only",
+    Parameter("tooth_height", 0.07, "m", length, "height of the tooth", "ours: the sources show it in figures only",
               PARAMETRIC),
-    Parameter("tooth_width", 0.045, "m", above_zero, "width of the tooth at its top", "ours", PARAMETRIC),
+    Parameter("tooth_width", 0.045, "m", length, "width of the tooth at its top", "ours", PARAMETRIC),
     Parameter("rake", 0.0, "deg", number(-80, 80), "rake angle, from the vertical", "ours", PARAMETRIC),
     Parameter("clearance", 3.0, "deg", number(0, 80), "clearance angle, from the horizontal", "ours", PARAMETRIC),
-    Parameter("tip_radius", 4e-3, "m", above_zero, "rounding of the tip; it lies so far behind the tool's origin",
+    Parameter("tip_radius", 4e-3, "m", length, "rounding of the tip; it lies so far behind the tool's origin",
               "ours"),
-    Parameter("wear_flat", 0.0, "m", number(0), "length of a worn flat behind the tip, along the motion", "ours",
+    Parameter("wear_flat", 0.0, "m", length_or_zero, "length of a worn flat behind the tip, along the motion", "ours",
               PARAMETRIC),
     Parameter("outline", "", "", file, "CSV file of x, y in m: a tooth of your own in place of the six above"))
 SHAPE = (
@@ -105,14 +105,14 @@ PLANE_TOOL = Group("tool", (
     Parameter("tool", "particles", "", choice("particles", "segments"), "what the tool is made of",
               "[Rojek 2003, 8.2, 8.1]"),
     *OUTLINE,
-    Parameter("tool_radius_min", 0.4e-3, "m", above_zero, "smallest radius of tool particles", "[Rojek 2003, 9.2]",
+    Parameter("tool_radius_min", 0.4e-3, "m", length, "smallest radius of tool particles", "[Rojek 2003, 9.2]",
               OF_PARTICLES),
-    Parameter("tool_radius_max", 0.52e-3, "m", above_zero, "largest radius of tool particles", "[Rojek 2003, 9.2]",
+    Parameter("tool_radius_max", 0.52e-3, "m", length, "largest radius of tool particles", "[Rojek 2003, 9.2]",
               OF_PARTICLES),
-    Parameter("thermal_radius", 0.5e-3, "m", above_zero,
+    Parameter("thermal_radius", 0.5e-3, "m", length,
               "mean radius of the particles that fill a tool of facets for its heat",
               "ours", {**OF_FACETS, "heat": (True,)}),
-    Parameter("segment", 1e-3, "m", above_zero, "longest segment of the tool's outline", "ours", OF_FACETS),
+    Parameter("segment", 1e-3, "m", length, "longest segment of the tool's outline", "ours", OF_FACETS),
     *SHAPE,
     Parameter("tool_density", STEEL.density, "kg/m3", density, "density of the tool", "[Rojek 2003, 7.4]")))
 
@@ -120,18 +120,18 @@ SPACE_TOOL = Group("tool", (
     Parameter("tool", "particles", "", choice("particles", "triangles"), "what the tool is made of",
               "[Rojek 2003, 13.3, 13.2]"),
     *OUTLINE,
-    Parameter("breadth", 0.057, "m", above_zero, "breadth of the tooth, across the cut", "ours", {"stl": ("",)}),
-    Parameter("tool_radius", 1.5e-3, "m", above_zero, "radius of the tool's spheres, before scale_factor",
+    Parameter("breadth", 0.057, "m", length, "breadth of the tooth, across the cut", "ours", {"stl": ("",)}),
+    Parameter("tool_radius", 1.5e-3, "m", length, "radius of the tool's spheres, before scale_factor",
               "[Rojek 2003, 13.3]",
               OF_PARTICLES),
     Parameter("stl", "", "", file,
               "STL file in m: a tool of your own in place of outline, breadth and tooth_*. It moves in +x, "
               "y is up, z across, the lowest point is the tip; top and back are fixed", "ours", {**OF_FACETS,
                                                                                                  "outline": ("",)}),
-    Parameter("thermal_radius", 2e-3, "m", above_zero,
+    Parameter("thermal_radius", 2e-3, "m", length,
               "mean radius of the particles that fill a tool of facets for its heat",
               "ours", {**OF_FACETS, "heat": (True,)}),
-    Parameter("facet", 0.02, "m", above_zero,
+    Parameter("facet", 0.02, "m", length,
               "size of the tool's triangles, halves of such squares; edges of an STL file longer "
               "than 1.5 times that are cut in halves", "ours", OF_FACETS),
     *SHAPE,
@@ -143,7 +143,7 @@ CONTACT = Group("contact of tool and rock", (
     Parameter("tool_kn", 90e9, "N/m", stiffness, "normal stiffness", "[Rojek 2003, 9.2]", size_power=(0, 1)),
     Parameter("tool_kt", 90e9, "N/m", stiffness, "tangential stiffness", "as tool_kn: no source gives one",
               size_power=(0, 1)),
-    Parameter("tool_mu", 0.3, "", above_zero, "friction", "[Rojek 2003, 9.2]"),
+    Parameter("tool_mu", 0.3, "", plausible(1e-3, 100), "friction", "[Rojek 2003, 9.2]"),
     Parameter("contact_damping", 0.9, "", number(0, 1), "dashpot, as a fraction of the critical one",
               "[Rojek 2003, 9.2]")))
 
@@ -151,12 +151,12 @@ CONTACT = Group("contact of tool and rock", (
 
 CUT_MOTION = (
     Parameter("velocity", 4.0, "m/s", speed, "cutting velocity", "[Rojek 2003, 9.2]"),
-    Parameter("time_scale", 1.0, "", above_zero,
+    Parameter("time_scale", 1.0, "", plausible(1e-4, 1e5),
               "mechanical over physical rate: the mechanics run so many times as fast as the "
               "process; heat flows, and all times count, in the process's own seconds, damping alone in those of the "
               "mechanics", "[Rojek 2003, 12.1], there 5"),
-    Parameter("depth_of_cut", 0.008, "m", above_zero, "depth of cut"),
-    Parameter("approach", 0.5e-3, "m", number(0), "free way before the tool meets the rock"))
+    Parameter("depth_of_cut", 0.008, "m", length, "depth of cut"),
+    Parameter("approach", 0.5e-3, "m", length_or_zero, "free way before the tool meets the rock"))
 DAMPING = Parameter("background_damping", 500.0, "1/s", number(0), "global viscous damping, rate of decay",
                     "ours: [Rojek 2003, 3.3] gives no number")
 OTHER_DAMPING = (
@@ -177,9 +177,9 @@ CYCLES = Group("motion", (
 LOWERING = Group("motion", (
     Parameter("velocity", 0.04, "m/s", speed, "cutting velocity", "[Rojek 2003, 13.1]"),
     Parameter("lowering_velocity", 0.08, "m/s", speed, "of the tooth on its way down"),
-    Parameter("depth_of_cut", 0.03, "m", above_zero, "depth of cut"),
-    Parameter("approach", 2e-3, "m", number(0), "free way before the tool meets the rock"),
-    Parameter("start", 0.0, "m", number(0), "place of the tip when it is lowered, from the left end"),
+    Parameter("depth_of_cut", 0.03, "m", length, "depth of cut"),
+    Parameter("approach", 2e-3, "m", length_or_zero, "free way before the tool meets the rock"),
+    Parameter("start", 0.0, "m", length_or_zero, "place of the tip when it is lowered, from the left end"),
     Parameter("cut_time", 1.0, "s", duration, "time of the horizontal cut", "[Rojek 2003, 13.3]"),
     Parameter("background_damping", 20.0, "1/s", number(0), "global viscous damping, rate of decay"),
     OTHER_DAMPING[0]))
@@ -198,7 +198,7 @@ WEAR = Group("wear", (
               "friction work, pressure, a power of either, or several modes",
               "[Rojek 2003, eqs. 6.1-6.5]"),
     *law_parameters(WEAR_LAWS, "wear_law"),
-    Parameter("wear_acceleration", 7000.0, "", number(0), "factor on the wear coefficient", "[Rojek 2003, 9.2]"),
+    Parameter("wear_acceleration", 7000.0, "", number(0, 1e10), "factor on the wear coefficient", "[Rojek 2003, 9.2]"),
     Parameter("removal", "volume", "", choice(*REMOVAL),
               "criterion: Archard's volume conserved, the depth of [Rojek 2003, 6.5], "
               "or none: the shape stays", "ours", OF_PARTICLES),
@@ -259,12 +259,12 @@ ACCURACY = Group("accuracy", (
     Parameter("rock_sampling_period", 4, "steps", integer(1), "between samples of sliding rock contacts", "make bench"),
     Parameter("wear_period", 100, "steps", integer(1), "between updates of wear and removal",
               "calibration/results/particle_size.md"),
-    Parameter("heat_period", 1e-4, "s", above_zero, "between heat steps, each divided as stability asks", "make bench",
+    Parameter("heat_period", 1e-4, "s", duration, "between heat steps, each divided as stability asks", "make bench",
               {"heat": (True,)}),
-    Parameter("surface_period", 5e-4, "s", above_zero, "between searches for free surface and open cracks", "ours",
+    Parameter("surface_period", 5e-4, "s", duration, "between searches for free surface and open cracks", "ours",
               {"heat": (True,)}),
     Parameter("damping_period", 500, "steps", integer(1), "between visits of the background damping, at most"),
-    Parameter("record_period", 2e-5, "s", above_zero, "between rows of history.csv")))
+    Parameter("record_period", 2e-5, "s", duration, "between rows of history.csv")))
 
 # ---- output
 

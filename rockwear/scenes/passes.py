@@ -8,7 +8,7 @@ import numpy as np
 from rockwear.kernels.archard import Hardness
 from rockwear.kernels.checks import require
 from rockwear.kernels.free_surface import free_surface
-from rockwear.kernels.parameter import Parameter, above_zero, integer, listed, numbers
+from rockwear.kernels.parameter import Parameter, duration, integer, listed, numbers, speed
 from rockwear.kernels.tool_load import tool_under_load
 from rockwear.scenes import cutting, parameters, parts
 from rockwear.scenes.cut import Cut
@@ -21,12 +21,12 @@ GIVEN = {"cycles": 1, "shank": "insulated", "heat": True, "time_scale": 1.0, "to
 """Parameters of the cut that are the programme's here."""
 SHANK_TEMPERATURE = replace(*parameters.HEAT.only("shank_temperature").parameters, when=None)
 PASSES = (
-    Parameter("velocities", "4,0.4,0.04", "m/s", numbers(above_zero), "of the process, a pass each",
+    Parameter("velocities", "4,0.4,0.04", "m/s", numbers(speed), "of the process, a pass each",
               "[Rojek 2003, 11.2]"),
-    Parameter("wear_velocity", 0.4, "m/s", above_zero, "of the process in the passes with wear", "[Rojek 2003, 11.4]"),
+    Parameter("wear_velocity", 0.4, "m/s", speed, "of the process in the passes with wear", "[Rojek 2003, 11.4]"),
     Parameter("wear_passes", 1, "", integer(0, parameters.MOST_CYCLES),
               "passes with wear from each of the two quasi-stationary fields"),
-    Parameter("long_time", 60.0, "s", above_zero, "of heating under the mean load, after each pass"))
+    Parameter("long_time", 60.0, "s", duration, "of heating under the mean load, after each pass"))
 
 
 def groups(**defaults):

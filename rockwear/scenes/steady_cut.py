@@ -11,7 +11,7 @@ from rockwear.kernels.checks import require
 from rockwear.kernels.cut_sizes import cut_sizes
 from rockwear.kernels.fragments import chip_length
 from rockwear.kernels.groove import groove_results
-from rockwear.kernels.parameter import Group, Parameter, Presets, above_zero, choice, number, zero_or
+from rockwear.kernels.parameter import Group, Parameter, Presets, choice, length, length_or_zero, number, zero_or
 from rockwear.kernels.polygon import reach
 from rockwear.kernels.rigid_motion import Straight
 from rockwear.kernels.steady_record import (
@@ -45,20 +45,20 @@ WINDOW = Group("rock", (
     Parameter("discs_per_depth", 0.0, "", zero_or(4, 64), "rock discs in the depth of cut, 16 for a result: gives the "
               "radii of rock and tool, window, grading, tooth, ramp_length and periods; 0: they are given",
               "ours", presets=OfTheCut()),
-    Parameter("window_behind", 0.03, "m", above_zero, "length of the window behind the tip"),
-    Parameter("window_ahead", 0.06, "m", above_zero, "length of the window ahead of the tip"),
-    Parameter("window_height", 0.04, "m", above_zero, "height of the window"),
+    Parameter("window_behind", 0.03, "m", length, "length of the window behind the tip"),
+    Parameter("window_ahead", 0.06, "m", length, "length of the window ahead of the tip"),
+    Parameter("window_height", 0.04, "m", length, "height of the window"),
     Parameter("boundary", BOUNDARIES[0], "", choice(*BOUNDARIES), "of the window: springs and dashpots of the rock "
               "beyond; nothing moves; or the same at the bottom alone"),
     *(p for p in parameters.SPECIMEN.parameters if p.name not in ("width", "height"))))
 STEADY = Group("motion", (
     *(p for p in parameters.CUT_MOTION if p.name != "approach"),
-    Parameter("cut_length", 0.1, "m", above_zero, "way of the tool"),
+    Parameter("cut_length", 0.1, "m", length, "way of the tool"),
     Parameter("accuracy", 0.0, "", zero_or(1e-3, 1), "standard error of the mean cutting force over it: the cut ends "
               "where it is as small, and was in two thirds of a record that is long enough, or after cut_length; 0: "
               "after cut_length"),
-    Parameter("ramp_length", 5e-3, "m", number(0), "way on which the tool comes to its velocity, from a groove that "
-              "fits it"),
+    Parameter("ramp_length", 5e-3, "m", length_or_zero, "way on which the tool comes to its velocity, from a groove "
+              "that fits it"),
     Parameter("free_chips", "stay", "", choice("stay", "leave"), "what chips do that nothing touches: a fast tool "
               "meets them again, a slow one does not", "calibration/results/steady_cut.md"),
     Parameter("begin_angle", 20.0, "deg", number(5, 90), "slope on which the rock rises ahead of the tool at first, as "

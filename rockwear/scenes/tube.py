@@ -6,7 +6,7 @@ import numpy as np
 
 from rockwear.engines.vibration import Vibration
 from rockwear.kernels.checks import require
-from rockwear.kernels.parameter import Group, Parameter, above_zero, choice, duration, number
+from rockwear.kernels.parameter import Group, Parameter, above_zero, choice, duration, length, length_or_zero
 from rockwear.model.granular import TubeBox, poured
 from rockwear.scenes.granular import ACCURACY, GRAINS, SETTLING, Granular, GranularOutput, check_radii
 from rockwear.scenes.parameters import with_defaults
@@ -20,20 +20,20 @@ VISITS = 100
 GROUPS = with_defaults([
     GRAINS,
     Group("box", (
-        Parameter("width", 0.044, "m", above_zero, "of the box of sand, along the tube"),
-        Parameter("depth", 0.032, "m", above_zero, "of the box, across the tube"),
-        Parameter("tube_diameter", 0.02, "m", above_zero, "of the tube, the circle in a polygon of 16 sides"),
-        Parameter("tube_length", 0.08, "m", above_zero, "of the tube, which is closed at its end"),
-        Parameter("tube_axis", 0.014, "m", above_zero, "height of the tube's axis over the floor of the box"))),
+        Parameter("width", 0.044, "m", length, "of the box of sand, along the tube"),
+        Parameter("depth", 0.032, "m", length, "of the box, across the tube"),
+        Parameter("tube_diameter", 0.02, "m", length, "of the tube, the circle in a polygon of 16 sides"),
+        Parameter("tube_length", 0.08, "m", length, "of the tube, which is closed at its end"),
+        Parameter("tube_axis", 0.014, "m", length, "height of the tube's axis over the floor of the box"))),
     Group("motion", (
         SETTLING,
-        Parameter("amplitude", 2e-4, "m", number(0), "of the vibration; 0.2 mm at 50 Hz are 2 g, as flasks of lost "
-                  "foam casting are vibrated with; 0: what gravity alone does"),
+        Parameter("amplitude", 2e-4, "m", length_or_zero, "of the vibration; 0.2 mm at 50 Hz are 2 g, as flasks of "
+                  "lost foam casting are vibrated with; 0: what gravity alone does"),
         Parameter("frequency", 50.0, "Hz", above_zero, "of the vibration"),
         Parameter("direction", "vertical", "", choice(*DIRECTIONS), "of the vibration; along: the tube's axis"),
         Parameter("vibrating", 1.0, "s", duration, "time of vibration after the settling"))),
     ACCURACY,
-    Group("output", (Parameter("snapshot_period", 0.1, "s", above_zero, "simulated time between the pictures"),))],
+    Group("output", (Parameter("snapshot_period", 0.1, "s", duration, "simulated time between the pictures"),))],
     radius_min=1.5e-3, radius_max=2e-3, density=2650.0)
 
 

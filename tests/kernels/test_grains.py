@@ -68,7 +68,8 @@ def test_a_grain_of_one_particle_each():
 
 
 @pytest.mark.parametrize("edge, rule", [(-1e-3, "greater than 0"), (math.nan, "finite"), (0.3, "at most 0.0215"),
-                                        (0.5e-3, "at least 0.00062")])
+                                        (0.5e-3, "at least 0.00062"), (1e-300, "at least 0.00062"),
+                                        (1e300, "at most 0.0215")])
 def test_refusals(edge, rule):
     with pytest.raises(ParameterError, match=f"^grain_edge = .*{rule}"):
         grains(POINTS, volume=VOLUME, edge=edge, seed=1)

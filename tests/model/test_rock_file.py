@@ -185,6 +185,7 @@ REFUSED = [
     (changed("plane/parameters/kn", True), "plane.parameters.kn = true N/m: must be a number"),
     (changed("plane/parameters/kn", [1]), "plane.parameters.kn = [1] N/m: must be a number"),
     (changed("plane/parameters/kn", float("nan")), "plane.parameters.kn = nan N/m: must be finite"),
+    (changed("plane/parameters/kn", 10**400), "plane.parameters.kn = inf N/m: must be finite"),
     (changed("plane/parameters/Rn", float("inf")), "plane.parameters.Rn = inf N: must be finite"),
     (changed("plane/parameters/kn", 18e3), "plane.parameters.kn = 18000 N/m: must be between 1e+06 and 1e+13"),
     (changed("plane/parameters/kn", 18e15), "plane.parameters.kn = 1.8e+16 N/m: must be between"),

@@ -86,6 +86,17 @@ OUT_OF_RANGE = [
     ({"rock_density": 2.5}, "rock_density = 2.5 kg/m3: must be between 100 and 1e+06"),
     ({"velocity": 1e99}, "velocity = 1e+99 m/s: must be between 1e-09 and 100000"),
     ({"start_up": 1e99}, "start_up = 1e+99 s: must be between 1e-12 and 1e+08"),
+    ({"time_scale": 1e300}, "time_scale = 1e+300: must be between 0.0001 and 100000"),
+    ({"tool_radius_min": 1e-300}, "tool_radius_min = 1e-300 m: must be between 1e-09 and 1e+06"),
+    ({"tool_radius_min": 1e-9}, "tool_radius_min = 1e-09 m: must be large enough for at most"),
+    ({"radius_max": 1e300}, "radius_max = 1e+300 m: must be between 1e-09 and 1e+06"),
+    ({"grain_edge": 1e-300}, "grain_edge = 1e-300 m: must be 0 or between 1e-09 and 1e+06"),
+    ({"grain_edge": 1e-9}, "grain_edge = 1e-09 m: must be at least 0.00219: a particle a grain"),
+    ({"snapshot_period": 1e-320}, "snapshot_period = 9.99989e-321 s: must be between 1e-12 and 1e+08"),
+    ({"tool_mu": 1e3}, "tool_mu = 1000: must be between 0.001 and 100"),
+    ({"wear_acceleration": 1e300}, "wear_acceleration = 1e+300: must be at most 1e+10"),
+    ({"wear_coefficient": 1e300}, "wear_coefficient = 1e+300: must be at most 1000"),
+    ({"wear_law": "modes", "wear_modes": "1e300/1/1"}, "wear_modes = 1e300/1/1: must be with k at most 1000"),
     ({"velocity": 1e-6, "start_up": 1e4, "cycles": 0, "heat": "false"}, "must be at most 1e+10 of"),
 ]
 NOT_USED = [

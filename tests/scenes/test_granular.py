@@ -126,6 +126,7 @@ def test_without_amplitude_gravity_acts_alone(tmp_path):
 
 
 HEAP_REFUSED = [
+    ({"radius_max": 1e300}, "radius_max = 1e+300 m: must be between 1e-09 and 1e+06"),
     ({"friction": -0.1}, "friction = -0.1: must be at least 0"),
     ({"rolling_resistance": -1}, "rolling_resistance = -1: must be at least 0"),
     ({"particles": 60}, "particles = 60: must be more, for a plate of at least 8 diameters"),
@@ -138,7 +139,7 @@ TUBE_REFUSED = [
     ({"tube_diameter": 0.04}, "tube_diameter = 0.04 m: must be less than"),
     ({"tube_axis": 5e-3}, "tube_axis = 0.005 m: must be more than"),
     ({"particles": 300}, "particles = 300: must be more, for a fill that covers the tube"),
-    ({"amplitude": -1e-4}, "amplitude = -0.0001 m: must be at least 0"),
+    ({"amplitude": -1e-4}, "amplitude = -0.0001 m: must be 0 or between 1e-09 and 1e+06"),
     ({"amplitude": 0.1}, "amplitude = 0.1 m: must be so small that the box is slower than 10 m/s"),
     ({"width": 3e-3}, "radius_max = 0.002 m: must be at most 0.0015, for a sphere to fit")]
 

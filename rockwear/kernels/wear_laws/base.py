@@ -19,7 +19,7 @@ WORK = (FRICTION, 1.0)
 STEEPEST = 20
 """Largest exponent of a law: forces to higher powers overflow."""
 
-WEAR_COEFFICIENT = Parameter("wear_coefficient", 0.01128, "", number(0), "Archard's k",
+WEAR_COEFFICIENT = Parameter("wear_coefficient", 0.01128, "", number(0, 1e3), "Archard's k",
                              "mean of [Rojek 2003, 6.14-6.15]")
 """A parameter that several laws share."""
 

@@ -3,7 +3,7 @@ import numpy as np
 
 from rockwear.kernels.checks import ParameterError, finite, require
 from rockwear.kernels.parameter import Parameter, text
-from rockwear.kernels.wear_laws.base import WearLaw
+from rockwear.kernels.wear_laws.base import WEAR_COEFFICIENT, WearLaw
 from rockwear.kernels.wear_laws.power import PowerLaw
 
 
@@ -66,5 +66,5 @@ def _mode(word, mu):
     parts = word.split("/")
     if len(parts) != 3:
         raise ParameterError("wear_modes", word.strip(), "k/exponent/share of each mode, with commas between modes")
-    k, exponent, share = (finite("wear_modes", part) for part in parts)
-    return PowerLaw(k=k, mu=mu, exponent=exponent, share=share)
+    exponent, share = (finite("wear_modes", part) for part in parts[1:])
+    return PowerLaw(k=WEAR_COEFFICIENT.rule("k", parts[0], ""), mu=mu, exponent=exponent, share=share)
