@@ -4,6 +4,7 @@ from abc import ABC, abstractmethod
 from yade import InsertionSortCollider, O, utils
 
 from rockwear.engines import access, base
+from rockwear.kernels.checks import require
 
 NEVER = 2**62
 """Steps that no run has."""
@@ -35,7 +36,11 @@ class Scene(ABC):
         """Make the engines and register them."""
 
     def _plan(self, stages):
-        """stages: {name: s}."""
+        """stages: {name: s}. Raises ParameterError for one that is not empty but shorter than half a step."""
+        step = self.time_step * self.time_scale
+        for name, seconds in stages.items():
+            require(seconds == 0 or seconds >= 0.5 * step, name, seconds, f"at least half a step, {0.5 * step:.3g}, "
+                    f"with time_step = {self.time_step:.3g} s and time_scale = {self.time_scale:g}", "s")
         # Chunks between canonical points depend on the scene alone, so that every run of it passes the same points.
         self.chunk = int(min(2000, max(100, 12_000_000 // max(1, len(self.rock.pairs)))))
         self.stages = [(name, max(1, self.steps_in(seconds))) for name, seconds in stages.items()]
