@@ -18,6 +18,8 @@ from rockwear.scenes.physics import Boundary
 from rockwear.scenes.rock_window import RockWindow
 from rockwear.scenes.turns import Turns
 
+WIDEST_WINDOW = 2.0
+"""rad about the axis of rotation: a longer one comes too near to a full turn."""
 STRENGTHS = "Rn", "Rt"
 SCALED = "radius_min", "radius_max", *STRENGTHS
 """Parameters that grow with scale_factor: the macroscopic strength stays."""
@@ -112,16 +114,23 @@ def make(values):
 
 
 def check_cut(v, turn_time):
-    """Raise ParameterError for a cut that does not fit into a turn or into the rock."""
+    """Raise ParameterError for a cut that does not fit into a turn or into the rock, or is none by the head's turn."""
+    require(v.cutter_radius > v.feed, "cutter_radius", v.cutter_radius, f"more than feed = {v.feed:g}", "m")
+    tip_speed = v.cutter_radius * v.angular_velocity
+    require(tip_speed > v.swing, "angular_velocity", v.angular_velocity, f"more than {v.swing / v.cutter_radius:.3g}, "
+            f"so that the pick turns faster than it moves with swing = {v.swing:g} m/s", "rad/s")
     require(v.cut_time < turn_time, "cut_time", v.cut_time, f"less than a turn, {turn_time:g}", "s")
     last = v.entry_angle + math.degrees(v.angular_velocity * v.cut_time)
     require(last < 170, "cut_time", v.cut_time,
             f"so short that the cut, from {v.entry_angle:g} degrees on, ends before 170 degrees", "s")
+    require(tip_speed * v.cut_time > 2 * v.radius_max, "cut_time", v.cut_time, "so long that the cut, "
+            f"{tip_speed * v.cut_time:.3g} m, is longer than a rock particle, {2 * v.radius_max:g}", "s")
     thinnest = v.feed * min(math.sin(math.radians(v.entry_angle)), math.sin(math.radians(last)))
     require(thinnest > 2 * v.radius_max, "feed", v.feed, f"so large that the chip, {thinnest:g} m at its thinnest, "
             f"is thicker than a rock particle, {2 * v.radius_max:g}", "m")
     require(v.backing > 6 * v.radius_max, "backing", v.backing,
             f"more than three rock particles, {6 * v.radius_max:g}", "m")
+    require(v.backing <= v.cutter_radius, "backing", v.backing, f"at most cutter_radius = {v.cutter_radius:g}", "m")
     if v.window:
         check_window(v)
 
@@ -131,6 +140,9 @@ def check_window(v):
     require(v.window_ahead >= 2 * v.feed, "window_ahead", v.window_ahead,
             f"at least twice feed = {v.feed:g}: chips are longer than they are thick", "m")
     require(v.window_behind >= v.feed, "window_behind", v.window_behind, f"at least feed = {v.feed:g}", "m")
+    whole, longest = v.window_behind + v.window_ahead, WIDEST_WINDOW * v.cutter_radius
+    require(whole <= longest, "window_behind + window_ahead", whole,
+            f"at most {longest:g}, an arc of {WIDEST_WINDOW:g} rad about the axis of rotation", "m")
     slab = (v.window_behind + v.window_ahead) / SLABS
     require(slab >= 2 * v.radius_max, "window_ahead", v.window_ahead,
             f"at least {SLABS * 2 * v.radius_max - v.window_behind:g}: a slab of the window takes a rock particle", "m")

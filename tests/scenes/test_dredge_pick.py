@@ -119,6 +119,11 @@ IN_WINDOW = dict(window="true")
 REFUSED = [
     (dict(cut_time=4), "cut_time = 4"), (dict(feed=0.01), "feed = 0.01"), (dict(backing=0.01), "backing = 0.01"),
     (dict(entry_angle=140, cut_time=0.6), "cut_time = 0.6"),
+    (dict(backing=60), "backing = 60 m: must be at most cutter_radius = 0.7"),
+    (dict(cutter_radius=0.05), "cutter_radius = 0.05 m: must be more than feed = 0.06"),
+    (dict(angular_velocity=1e-6), "angular_velocity = 1e-06 rad/s: must be more than 0.286, so that"),
+    (dict(cut_time=1e-3), "cut_time = 0.001 s: must be so long that the cut, 0.00113 m, is longer than a rock"),
+    (dict(IN_WINDOW, window_behind=3), "window_behind + window_ahead = 3.14 m: must be at most 1.4, an arc of 2 rad"),
     (dict(tooth_height=0.05, clearance=1), "tooth_height = 0.0499988"),
     (dict(IN_WINDOW, window_ahead=0.1), "window_ahead = 0.1"),
     (dict(IN_WINDOW, window_behind=0.05), "window_behind = 0.05"),
