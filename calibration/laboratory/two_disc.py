@@ -1,21 +1,21 @@
 """The two-disc programme [Rojek 2003, 4.6]: one bond under tension, compression, shear and both, for every bond law."""
 import json
+import math
 import os
 import platform
 import sys
 import time
-from pathlib import Path
 
 import numpy as np
 import yade
 
 from rockwear import __version__, report
 from rockwear.kernels.bond_laws import BOND_LAWS
-from rockwear.kernels.checks import ParameterError
+from rockwear.kernels.checks import ParameterError, require
 from rockwear.kernels.parameter import Group, Parameter, integer, length, text
-from rockwear.run import parameters, servers
+from rockwear.run import parameters, run_folder, servers
 from rockwear.scenes.parameters import BONDS
-from rockwear.scenes.two_disc import drive_pair, programme
+from rockwear.scenes.two_disc import BEYOND, drive_pair, programme
 
 GROUPS = [
     BONDS.without("rock", "bond_law", "bonding_gap", "weibull_modulus", "rotation", "grain_edge",
@@ -50,31 +50,24 @@ def run():
     try:
         values = parameters.read(GROUPS, sys.argv[1:])
         laws = {name: (law, *ends(law, values)) for name, law in make_laws(values).items()}
-        folder = make_folder(values["out"])
+        check_paths(laws, values)
+        folder = run_folder.find("two_disc", values["out"])
+        held = run_folder.take(folder)
     except ParameterError as error:
         print(f"error: {error}", file=sys.stderr)
         return 2
-    found = {name: run_law(law, *both, values) for name, (law, *both) in laws.items()}
-    results = judge(found, laws)
-    write(folder, found, results, values, began)
-    deviation = results["largest deviation"][0]
+    with held:
+        run_folder.empty(folder)
+        found = {name: run_law(law, *both, values) for name, (law, *both) in laws.items()}
+        results = judge(found, laws)
+        deviation = results["largest deviation"][0]
+        agree = deviation <= AGREEMENT
+        ended = "finished" if agree else f"YADE and the bond laws differ by {deviation:.1e}, allowed is {AGREEMENT:g}"
+        write(folder, found, results, values, began, ended, int(not agree))
     print(f"YADE against drive: at most {deviation:.1e} of the strength; report: {folder / 'report.html'}")
-    if not deviation <= AGREEMENT:
-        print(f"error: YADE and the bond laws differ by {deviation:.1e}, allowed is {AGREEMENT:g}", file=sys.stderr)
-        return 1
-    return 0
-
-
-def make_folder(out):
-    """The folder of the results. Raises ParameterError."""
-    row = parameters.batch_row()
-    folder = Path(out or Path("out") / "two_disc") / (row or "")
-    try:
-        for name in ("figures", "paths"):
-            (folder / name).mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise ParameterError("out", str(folder), f"a folder that can be written ({error.strerror})") from None
-    return folder
+    if not agree:
+        print(f"error: {ended}", file=sys.stderr)
+    return int(not agree)
 
 
 def make_laws(values):
@@ -89,6 +82,17 @@ def ends(law, values):
     if hasattr(law, "tension"):
         return -law.Rn / law.tension.b2, -law.Rt / law.shear.b2
     return tuple(R / k + R / values["H"] for R, k in ((law.Rn, law.kn), (law.Rt, law.kt)))
+
+
+def check_paths(laws, values):
+    """Raise ParameterError where a path goes further than the radius. laws: {name: (law, *ends)}."""
+    reach, slope = values["radius"] / BEYOND, values["H"]
+    both = [pair for law, *found in laws.values() for pair in zip(ends(law, {**values, "H": math.inf}), found)]
+    without = max(elastic for elastic, _ in both)
+    require(without < reach, "radius", values["radius"], f"more than {BEYOND * without:.3g}, where the paths end", "m")
+    least = max(slope * (end - elastic) / (reach - elastic) for elastic, end in both)
+    require(slope > least, "H", slope, f"more than {least:.3g}, so that the paths end before the radius, "
+            f"{values['radius']:g} m", "N/m")
 
 
 def run_law(law, end_n, end_t, values):
@@ -125,15 +129,16 @@ def judge(found, laws):
     return results
 
 
-def write(folder, found, results, values, began):
-    """paths/*.csv, summary.json, and the report with its figures."""
+def write(folder, found, results, values, began, ended, code):
+    """paths/*.csv, summary.json, and the report with its figures. ended, code: how the run ends, its exit code."""
+    (folder / "paths").mkdir()
     for name, kinds in found.items():
         for kind, path in kinds.items():
             columns = [column for column in path if column != "released"]
             header = ",".join(f"{column} [{'m' if column in ('un', 'ut') else 'N'}]" for column in columns)
             np.savetxt(folder / "paths" / f"{name}_{kind.replace(', ', '_').replace(' ', '_')}.csv",
                        np.column_stack([path[column] for column in columns]), "%.12g", ",", header=header, comments="")
-    summary = {"scene": "two_disc", "ended": "finished", "exit_code": 0, "parameters": values, "seed": None,
+    summary = {"scene": "two_disc", "ended": ended, "exit_code": code, "parameters": values, "seed": None,
                "versions": {"rockwear": __version__, "yade": yade.config.version, "python": platform.python_version(),
                             "numpy": np.__version__},
                "results": {name: {"value": value, "unit": unit} for name, (value, unit) in results.items()},

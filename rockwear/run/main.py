@@ -4,7 +4,6 @@ import math
 import os
 import platform
 import resource
-import shutil
 import signal
 import sys
 import time
@@ -15,7 +14,7 @@ import numpy as np
 import yade
 
 from rockwear import __version__, report
-from rockwear.run import checkpoint, lock, parameters, servers, vtk
+from rockwear.run import checkpoint, parameters, run_folder, servers, vtk
 from rockwear.engines import base
 from rockwear.engines.base import RunEnded
 from rockwear.engines.history import write_table
@@ -31,11 +30,6 @@ COMMON = Group("output", (
     Parameter("report", True, "", flag, "write report.html and its figures at the end"),
     Parameter("vtk", False, "", flag, "write each snapshot for ParaView too"),
 ))
-FOLDERS = "snapshots", "checkpoint", "figures", "vtk"
-"""Folders that a new run empties."""
-FILES = ("summary.json", "history.csv", "cracks.csv", "groove.csv", "chips.csv", "turns.csv", "wear_profile.csv",
-         "tool_fields.csv", "warming.csv", "errors.csv", "tool.stl", "report.html")
-"""Files that a new run removes."""
 HISTORY = "history.f8"
 """In the folder checkpoint: the rows of history.csv, 8 bytes a number; a checkpoint says how many of them count."""
 MOST_STEPS = 1e10
@@ -62,7 +56,8 @@ def main(name, declared, make_scene):
         _leave(0)
     try:
         values = parameters.read(declared, sys.argv[1:])
-        folder, identity = _folder(name, values, declared), _identity(name, values, declared)
+        folder, identity = run_folder.find(name, values["out"]), _identity(name, values, declared)
+        _check_files(folder, values, declared)
         if values["resume"]:
             checkpoint.load(folder / "checkpoint", identity)
         scene = make_scene(values)
@@ -114,28 +109,11 @@ def _identity(name, values, declared):
             "files": {name: checkpoint.digest(path) for name, path in _files(values, declared).items()}}
 
 
-def _folder(name, values, declared):
-    row = parameters.batch_row()
-    folder = Path(values["out"] or Path("out") / name)
-    if row is not None:
-        folder = folder / row
-    existing = folder
-    try:
-        while not existing.exists():
-            existing = existing.parent
-        writable = existing.is_dir() and os.access(existing, os.W_OK)
-    except OSError as error:
-        raise ParameterError("out", str(folder), f"a folder that can be written ({error.strerror})") from None
-    if not writable:
-        raise ParameterError("out", str(folder), "a folder that can be written")
+def _check_files(folder, values, declared):
+    """Raise ParameterError for a file that is read and lies in the folder of the run."""
     for key, path in _files(values, declared).items():
         require(folder.resolve() not in path.resolve().parents, key, str(path),
                 f"outside of {folder}, where this run replaces what is there")
-    # A run replaces an earlier run in its folder, but no files of another origin.
-    foreign = [old for old in (*FOLDERS, "report.html") if (folder / old).exists()]
-    if foreign and not (folder / "model.npz").exists():
-        raise ParameterError("out", str(folder), f"a folder of runs: {', '.join(foreign)} there would be replaced")
-    return folder
 
 
 class Run:
@@ -154,11 +132,7 @@ class Run:
         """Make the folder and the scene, fresh or from the checkpoint."""
         if not self.values["resume"]:
             self.scene.build()
-        try:
-            (self.folder / "snapshots").mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            raise ParameterError("out", str(self.folder), f"a folder that can be written ({error.strerror})") from None
-        self.lock = lock.hold(self.folder)
+        self.lock = run_folder.take(self.folder)
         if self.values["resume"]:
             state, directory = checkpoint.load(self.folder / "checkpoint", self.identity)
             self.scene.restore(state["scene"], directory, self.folder)
@@ -166,10 +140,7 @@ class Run:
             self.wall_before, self.ended = float(state["wall_time"]), state["ended"]
             self._remove_later_snapshots()
         else:
-            for old in FOLDERS:
-                shutil.rmtree(self.folder / old, ignore_errors=True)
-            for old in FILES:
-                (self.folder / old).unlink(missing_ok=True)
+            run_folder.empty(self.folder)
             (self.folder / "snapshots").mkdir()
             write_arrays(self.folder / "model.npz", self.scene.output.model())
         (self.folder / "checkpoint").mkdir(exist_ok=True)

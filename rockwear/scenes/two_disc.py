@@ -13,6 +13,8 @@ Response = namedtuple("Response", "un ut Fn Ft bonds")
 on the second particle as it was summed up, in the law's signs; and the engine of the bond."""
 
 TIME_STEP = 1e-6
+BEYOND = 1.25
+"""Where the paths of `programme` end, over the displacement at which a bond is gone."""
 
 
 class PairDriver(base.Engine):
@@ -110,10 +112,10 @@ def programme(law, end_n, end_t, steps):
     """
     yield_n = law.Rn / law.kn
     rest = end_n - yield_n
-    corners = [0.0, yield_n + 0.3 * rest, 0.3 * end_n, yield_n + 0.6 * rest, 0.6 * end_n, 1.25 * end_n]
+    corners = [0.0, yield_n + 0.3 * rest, 0.3 * end_n, yield_n + 0.6 * rest, 0.6 * end_n, BEYOND * end_n]
     legs = [start + (stop - start) * np.linspace(0.0, 1.0, steps, endpoint=False)
             for start, stop in zip(corners, corners[1:])]
-    un, ut = 1.25 * end_n * np.linspace(0.0, 1.0, steps), 1.25 * end_t * np.linspace(0.0, 1.0, steps)
+    un, ut = (BEYOND * end * np.linspace(0.0, 1.0, steps) for end in (end_n, end_t))
     cycles = np.concatenate(legs)
     return {"tension": (un, 0 * un), "tension, unloading and reloading": (cycles, 0 * cycles),
             "compression": (-un, 0 * un), "shear": (0 * ut, ut), "shear with compression": (-ut / 10, ut),

@@ -4,7 +4,7 @@ import subprocess
 
 import pytest
 
-from rockwear.run import checkpoint
+from rockwear.run import checkpoint, lock
 from tests.running import ROOT, run_script, start
 
 SCRIPTS = ROOT / "tests/run/scripts"
@@ -50,7 +50,7 @@ def test_a_row_of_a_table_may_leave_a_column_out(tmp_path):
 def test_a_checkpoint_of_another_version_is_refused(tmp_path):
     checkpoint.save(tmp_path / "out/checkpoint", identity={"rockwear version": "0.1.0"}, state={},
                     write_scenes=lambda directory: None)
-    (tmp_path / "out/model.npz").touch()
+    (tmp_path / "out" / lock.FILE).touch()
     error = error_of(run_script(SCRIPTS / "steps.py", "--out", str(tmp_path / "out"), "--resume"))
     assert "must be of the same rockwear version: 0.1.0 there, " in error
 

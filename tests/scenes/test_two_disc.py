@@ -2,7 +2,9 @@
 
 import pytest
 
-from tests.running import ROOT, checks_of, run_script
+from tests.running import ROOT, assert_refused, checks_of, run_script
+
+SCRIPT = ROOT / "yade_scripts/two_disc.py"
 
 
 @pytest.fixture(scope="module")
@@ -150,8 +152,7 @@ def test_an_engine_broken_on_purpose_is_noticed(checks):
 
 
 def test_the_scene_leaves_a_figure_for_each_of_the_monograph(tmp_path):
-    script = ROOT / "yade_scripts/two_disc.py"
-    run = run_script(script, "--out", str(tmp_path / "out"), "--steps", "101", out=tmp_path / "out")
+    run = run_script(SCRIPT, "--out", str(tmp_path / "out"), "--steps", "101", out=tmp_path / "out")
     assert run.code == 0, run.stderr
     figures = {file.stem for file in (tmp_path / "out/figures").glob("*.png")}
     assert figures >= {f"figure_4_{number}" for number in range(11, 27)} and len(figures) == 48
@@ -164,6 +165,26 @@ def test_the_scene_leaves_a_figure_for_each_of_the_monograph(tmp_path):
     assert results["damage, shear with tension: largest Fn"] < 0.51e5
 
 
-def test_the_scene_refuses_what_it_cannot_use(tmp_path):
-    run = run_script(ROOT / "yade_scripts/two_disc.py", "--kn", "-1", "--out", str(tmp_path / "out"))
-    assert run.code == 2 and "kn = -1 N/m" in run.stderr and not (tmp_path / "out").exists()
+@pytest.mark.parametrize("words, error", [
+    (("--kn", "-1"), "kn = -1 N/m: must be greater than 0"),
+    (("--kt", "1"), "radius = 0.00125 m: must be more than 1.25e+05, where the paths end"),
+    (("--H", "1e7"), "H = 1e+07 N/m: must be more than 1.01e+08, so that the paths end before the radius, 0.00125 m")])
+def test_the_scene_refuses_what_it_cannot_use(tmp_path, words, error):
+    run = run_script(SCRIPT, *words, "--out", str(tmp_path / "out"))
+    assert_refused(run.code, run.stderr, error)
+    assert not (tmp_path / "out").exists()
+
+
+def test_the_scene_replaces_no_file_of_another_origin(tmp_path):
+    (tmp_path / "summary.json").write_text("mine", encoding="utf-8")
+    run = run_script(SCRIPT, "--out", str(tmp_path))
+    assert_refused(run.code, run.stderr, "a folder of runs: summary.json there would be replaced")
+    assert [file.name for file in tmp_path.iterdir()] == ["summary.json"]
+
+
+def test_a_difference_from_the_laws_is_an_error_in_the_summary_too(tmp_path):
+    """Paths so long that YADE's sums of 1e-11 m count for nothing."""
+    run = run_script(SCRIPT, "--radius", "1e6", "--kn", "1", "--kt", "1e15", "--H", "1", "--steps", "11", "--out",
+                     str(tmp_path / "out"), out=tmp_path / "out")
+    assert run.code == run.summary["exit_code"] == 1
+    assert run.summary["ended"].startswith("YADE and the bond laws differ by ") and run.summary["ended"] in run.stderr
