@@ -47,6 +47,8 @@ ACCURACY = Group("accuracy", (
     Parameter("slip_step", 2e-6, "m", length, "sliding in a time step", "ours, see SlidingWear"),
     Parameter("wear_period", 10, "steps", integer(1), "between updates of wear and removal"),
     Parameter("record_distance", 0.5, "m", length, "laboratory distance between rows of history.csv")))
+DEVIATION_TOLD = 0.03
+"""Part of the k given by which the one returned may be off without a warning."""
 GROUPS = parameters.with_defaults(
     [TEST, parameters.CONTACT.without("contact_damping"),
      parameters.WEAR.without("hardness", "hardness_temperature", "wear_tolerance", "tool_temperature"), ACCURACY],
@@ -212,6 +214,17 @@ class SlidingWear(Scene):
         """Worn depth (m), worn volume over the block's surface."""
         return self.tool.erosion.archard_volume / self.width
 
+    def depth_ratio(self):
+        """Worn over expected depth up to now; nan where nothing is to wear."""
+        expected = self.expected_depth(self.slid)
+        return self.depth / expected if expected else math.nan
+
+    def wears_evenly(self):
+        """Whether the law wears the block as the nominal pressure would: in a random packing, one linear in it."""
+        hardness = float(self.hardness(self.v.temperature))
+        once, twice = (self.law.rate(factor * self.pressure, hardness) for factor in (1, 2))
+        return self.v.packing == "lattice" or math.isclose(twice, 2 * once)
+
 
 class SlidingWearOutput(Output):
     """What the folder of a sliding wear test shows."""
@@ -229,8 +242,7 @@ class SlidingWearOutput(Output):
     def results(self):
         """{name: (value, unit)} of the run; k_returned is what the laboratory would find from force, way and depth."""
         v, erosion = self.scene.v, self.scene.tool.erosion
-        expected = self.scene.expected_depth(self.scene.slid)
-        ratio = self.scene.depth / expected if expected else math.nan
+        expected, ratio = self.scene.expected_depth(self.scene.slid), self.scene.depth_ratio()
         given = {} if v.wear_law == "modes" else {"k_given": (v.wear_coefficient, "-"),
                                                   "k_returned": (v.wear_coefficient * ratio, "-")}
         return {**given, "k_deviation": (ratio - 1, "-"), "expected_depth": (expected, "m"),
@@ -243,7 +255,11 @@ class SlidingWearOutput(Output):
                 "tool_particles": (self.scene.tool.count, "-")}
 
     def warnings(self):
-        return self.scene.wear.warnings()
+        found, off = self.scene.wear.warnings(), self.scene.depth_ratio() - 1
+        if self.scene.wears_evenly() and abs(off) > DEVIATION_TOLD:
+            return [*found, f"the k returned is off by {100 * off:.2g} %: contacts that close slip elastically before "
+                    "they slide; a greater tool_kt or a smaller wear_acceleration brings it nearer"]
+        return found
 
     def balances(self):
         """Friction: mu F s of the known load, and what became of it; mass: Archard's volume, and where it is."""

@@ -80,6 +80,13 @@ def test_more_wear_on_less_way_is_the_same_wear_until_contacts_are_too_short(tmp
     assert -0.03 < off[1] < 5 * off[0] < 0 and off[0] > -2e-3
 
 
+@pytest.mark.parametrize("values, told", [(dict(tool_kt=1e6), True), (dict(wear_law="power", wear_exponent=2), False)])
+def test_a_k_that_is_off_is_told_unless_the_law_feels_uneven_pressure(tmp_path, values, told):
+    run = lab(tmp_path / "out", report="false", distance=1, wear_acceleration=10, **values)
+    assert run.code == 0 and abs(value(run, "k_deviation")) > 0.1, run.stderr
+    assert any("tool_kt or a smaller wear_acceleration" in line for line in run.summary["warnings"]) == told
+
+
 def test_a_block_worn_away_ends_in_one_line(tmp_path):
     run = lab(tmp_path / "out", report="false", distance=400, wear_acceleration=10000)
     assert run.code == 0 and "the block is worn away after" in run.summary["ended"], run.stderr
