@@ -3,6 +3,8 @@ import math
 
 ENERGY_MISSED = 0.05
 """Part of its largest entry that the energy balance may miss without a warning."""
+LEAST_ENERGY = 1e-15
+"""J, or J/m in the plane: no larger entries are round-off. A bond of 1 N and 1e10 N/m holds 5e-11."""
 
 
 class StoredEnergy:
@@ -44,9 +46,9 @@ def with_residual(balance, source):
 
 
 def energy_warnings(balance):
-    """Lines where an energy balance misses more than ENERGY_MISSED of its largest entry."""
+    """Lines where an energy balance misses more than ENERGY_MISSED of its largest entry, if that is no round-off."""
     largest = max(abs(value) for name, value in balance.items() if name != "residual")
-    part = balance["residual"] / largest if largest else 0.0
+    part = balance["residual"] / largest if largest > LEAST_ENERGY else 0.0
     return [] if abs(part) <= ENERGY_MISSED else [
         f"the energy balance misses {100 * part:.3g} % of its largest entry: results are no better known than that; a "
         "smaller sampling period or time_step_fraction may tell why"]
