@@ -252,7 +252,7 @@ HEAT = Group("heat", (
 TIME_STEP = (
     Parameter("time_step_fraction", 0.8, "", number(1e-4, 1), "time step over the critical one", "make bench",
               {"time_step": (0.0,)}),
-    Parameter("time_step", 0.0, "s", number(0), "time step itself; 0: by time_step_fraction"))
+    Parameter("time_step", 0.0, "s", zero_or(1e-15, 1), "time step itself; 0: by time_step_fraction"))
 ACCURACY = Group("accuracy", (
     *TIME_STEP,
     Parameter("sampling_period", 1, "steps", integer(1), "between samples of the tool's contacts", "make bench"),

@@ -94,6 +94,7 @@ OUT_OF_RANGE = [
     ({"radius_max": 1e300}, "radius_max = 1e+300 m: must be between 1e-09 and 1e+06"),
     ({"grain_edge": 1e-300}, "grain_edge = 1e-300 m: must be 0 or between 1e-09 and 1e+06"),
     ({"grain_edge": 1e-9}, "grain_edge = 1e-09 m: must be at least 0.00219: a particle a grain"),
+    ({"time_step": 1e-320}, "time_step = 9.99989e-321 s: must be 0 or between 1e-15 and 1"),
     ({"snapshot_period": 1e-320}, "snapshot_period = 9.99989e-321 s: must be between 1e-12 and 1e+08"),
     ({"tool_mu": 1e3}, "tool_mu = 1000: must be between 0.001 and 100"),
     ({"wear_acceleration": 1e300}, "wear_acceleration = 1e+300: must be at most 1e+10"),
