@@ -14,8 +14,7 @@ from rockwear.engines.energy_guard import EnergyGuard
 from rockwear.engines.grain_contacts import GrainContacts
 from rockwear.engines.recorder import Recorder
 from rockwear.kernels.checks import require
-from rockwear.kernels.parameter import (
-    Group, Parameter, above_zero, density, duration, integer, length, number, plausible)
+from rockwear.kernels.parameter import Group, Parameter, density, duration, integer, length, number, plausible
 from rockwear.run import vtk
 from rockwear.scenes.balances import with_residual
 from rockwear.scenes.output import Output
