@@ -5,8 +5,10 @@ from types import SimpleNamespace
 
 import numpy as np
 
+from rockwear.kernels.bond_laws import BOND_LAWS
 from rockwear.kernels.checks import require
-from rockwear.kernels.parameter import Fixed, Group, Parameter, above_zero, duration, flag, integer, length, number
+from rockwear.kernels.parameter import (
+    Fixed, Group, Parameter, above_zero, duration, flag, integer, law_parameters, length, number)
 from rockwear.kernels.polygon import nearest_on_edges
 from rockwear.kernels.rigid_motion import SwingAndRotation
 from rockwear.kernels.strip import ArcStrip
@@ -20,9 +22,9 @@ from rockwear.scenes.turns import Turns
 
 WIDEST_WINDOW = 2.0
 """rad about the axis of rotation: a longer one comes too near to a full turn."""
-STRENGTHS = "Rn", "Rt"
-SCALED = "radius_min", "radius_max", *STRENGTHS
-"""Parameters that grow with scale_factor: the macroscopic strength stays."""
+STRENGTHS = {p.name: p.size_power[0] for p in law_parameters(BOND_LAWS, "bond_law") if p.size_power[0]}
+SCALED = {"radius_min": 1, "radius_max": 1, **STRENGTHS}
+"""Powers of scale_factor with which parameters grow: the macroscopic strength stays."""
 WITHOUT = {"width", "height", "grading_factor", "fine_depth", "velocity", "depth_of_cut", "start_up", "cycle_time",
            "cycles"}
 """Parameters of a straight cut through a box."""
@@ -93,7 +95,7 @@ def make(values):
     and at its far side. Its particles grow with the distance from the arc's centre. Each turn begins anew with the
     window that the approach left: what slabs took along in the turn before, chips and cracks, is gone.
     """
-    scaled = {name: values["scale_factor"] * values[name] for name in SCALED if name in values}
+    scaled = {name: values["scale_factor"]**power * values[name] for name, power in SCALED.items() if name in values}
     v = SimpleNamespace(**{**values, **scaled})
     v.depth_of_cut = v.feed
     parts.check_radii(v)

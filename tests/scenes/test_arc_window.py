@@ -65,8 +65,14 @@ def moved_in_second_turn(out):
 
 @pytest.fixture(scope="module")
 def short_and_long(tmp_path_factory):
-    return {name: np.array(rows).T for name, rows in checks_of(
-        "arc_window", tmp_path_factory.mktemp("arc")).items()}
+    found = checks_of("arc_window", tmp_path_factory.mktemp("arc"))
+    return {**{name: np.array(found[name]).T for name in ("short", "long", "outwards")}, "padova": found["padova"]}
+
+
+def test_all_strengths_of_a_bond_grow_with_the_discs(short_and_long):
+    """Of the Padova law Rn alone did, and shear was weak beside tension."""
+    small, large = (np.array(short_and_long["padova"][factor]) for factor in "24")
+    assert large / small == pytest.approx([2.0, 2.0, 0.5], rel=1e-12)
 
 
 def test_bottom_and_ends_are_held_along_the_arc(short_and_long):

@@ -3,7 +3,8 @@
     yade -n -x arc_window.py CHECKS.json
 
 Writes {"short" or "long": [[m that the tip has gone, J/m of its work, of that by friction]]} from the first touch on,
-and of the short one "outwards": [part of the normal of each support that points away from the arc's centre].
+of the short one "outwards": [part of the normal of each support that points away from the arc's centre], and "padova":
+{scale_factor: [tensile strength, cohesion and m^3 of that law]}.
 """
 import json
 import os
@@ -56,8 +57,15 @@ def course(ahead, cut_time):
     return found, outwards.tolist()
 
 
+def padova(scale_factor):
+    """[Rn, c, m^3] of a bond."""
+    groups = with_defaults(dredging.groups(), bond_law="padova", scale_factor=scale_factor)
+    law = dredging.make(parameters.read(groups, [])).bond_law
+    return [law.Rn, law.c, law.m**3]
+
+
 packed_box = rock_mass.packed_box
-found = {}
+found = {"padova": {scale_factor: padova(scale_factor) for scale_factor in (2, 4)}}
 found["short"], found["outwards"] = course(AHEAD, 0.4)
 with mock.patch.object(rock_mass, "packed_box", twice):
     # A shorter cut has a longer window end at the same place: the arc is the same.
