@@ -29,6 +29,11 @@ BLOCK_OF_TRIANGLES = {**{name: v for name, v in BLOCK.items() if name != "tool_r
 edge cost the energy balance 4 %."""
 
 
+def packing(debian_12, debian_13):
+    """The seed of a packing that tells: one seed gives other packings with the numpy and scipy of another Debian."""
+    return debian_12 if np.lib.NumpyVersion(np.__version__) < "2.0.0" else debian_13
+
+
 def arguments(values):
     """Command line words of a dict of parameters."""
     return [word for name, value in values.items() for word in (f"--{name}", str(value))]

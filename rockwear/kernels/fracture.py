@@ -92,11 +92,12 @@ def resistance_curve(*, force, opening, width, notch):
 
 
 def _energy(crack, dissipated, width, notch):
-    # Between two moments: the first past the onset, or the peak, and the last of the test or the first past END.
+    # Between two moments: the last before the onset, or the peak, and the last of the test or the first past END. A
+    # crack may run from one to the other at once.
     begun, past = crack >= notch + ONSET * (1 - notch), crack >= END
     if not begun.any():
         return math.nan
-    begin = int(np.argmax(begun))
+    begin = max(int(np.argmax(begun)) - 1, 0)
     end = int(np.argmax(past)) if past.any() else len(crack) - 1
     grown = (crack[end] - crack[begin]) * width
     return float((dissipated[end] - dissipated[begin]) / grown) if end > begin and grown > 0 else math.nan

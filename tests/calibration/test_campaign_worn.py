@@ -9,6 +9,7 @@ from calibration.campaigns.runs import finished
 from rockwear.kernels.polygon import area
 from rockwear.kernels.steady_record import Measured
 from rockwear.report.folder import RunFolder
+from tests.running import packing
 
 TINY = {**sharp_and_worn.CUT, "discs_per_depth": 4, "cut_length": 0.02, "snapshot_period": 5e-4}
 SEEDS = 2, 3
@@ -24,7 +25,8 @@ def campaign(tmp_path_factory):
             patch.setattr(sharp_and_worn, "SHAPES", 2)
             patch.setattr(sharp_and_worn, "SEEDS", SEEDS)
             patch.setattr(sharp_and_worn, "CUT", TINY)
-            patch.setattr(sharp_and_worn, "WORN", {**TINY, "rake": sharp_and_worn.RAKE, "wear_acceleration": 5.5e3})
+            patch.setattr(sharp_and_worn, "WORN", {
+                **TINY, "rake": sharp_and_worn.RAKE, "seed": packing(1, 4), "wear_acceleration": 5.5e3})
             assert sharp_and_worn.main(folder) == 0
     run()
     return folder, run

@@ -67,6 +67,16 @@ def test_a_crack_that_never_grows_has_no_energy():
     assert math.isfinite(found["modulus"]) and math.isnan(found["energy"])
 
 
+def test_a_crack_that_runs_at_once_has_its_energy():
+    """From before the onset to past the end of what counts, between two rows."""
+    force, opening = sharp_crack(modulus=13e9, energy=30.0, width=0.1, notch=0.4, last=0.85)
+    rows = np.append(np.arange(210), len(force) - 1)
+    found = fracture.resistance_curve(force=force[rows], opening=opening[rows], width=0.1, notch=0.4)
+    assert found["crack"][-2] < 0.41 and found["crack"][-1] > 0.8
+    # Between two rows the force is taken to fall along a line, and it falls below.
+    assert 30.0 < found["energy"] < 60.0
+
+
 def test_a_crack_that_ends_before_the_onset_has_no_energy():
     force, opening = sharp_crack(modulus=13e9, energy=30.0, width=0.1, notch=0.4, last=0.43)
     found = fracture.resistance_curve(force=force, opening=opening, width=0.1, notch=0.4)

@@ -16,7 +16,7 @@ from rockwear.model.thermal_body import FacetBody, ParticleBody
 from rockwear.report.folder import read_history
 from tests.running import (
     BLOCK, BLOCK_OF_TRIANGLES, ROOT, SMALL, arguments, assert_as_if_never_stopped, assert_density_is_shown,
-    assert_refused, interrupt_script, last_snapshot, refusals, run_script, value, vtk_field)
+    assert_refused, interrupt_script, last_snapshot, packing, refusals, run_script, value, vtk_field)
 
 DENSITY = 7830.0
 LIGHT = 10.0
@@ -26,8 +26,8 @@ IN_SPACE = {**{name: v for name, v in BLOCK.items() if name not in ("Rn", "Rt")}
             "heat_period": 1e-4, "surface_period": 0.02, "report": "false"}
 """The block of cutting_3d_thermal.py in miniature; bonds, wear and heat are the script's own."""
 OF_SEGMENTS = {**{name: v for name, v in SMALL.items() if name != "cycles"}, "start_up": 8e-4, "cycle_time": 2e-4,
-               "wear_acceleration": 60000, "seed": 3, "wear_period": 50, "report": "false", "control_radius": 3,
-               "emissivity": 0.9}
+               "wear_acceleration": 60000, "seed": packing(3, 10), "wear_period": 50, "report": "false",
+               "control_radius": 3, "emissivity": 0.9}
 """The cut of segments_thermal.py in miniature, its wear as much faster as it is shorter."""
 
 

@@ -43,9 +43,9 @@ def test_equal_particles_go_once_they_are_worn_by_their_diameter(tmp_path):
 
 @pytest.fixture(scope="module")
 def heated(tmp_path_factory):
-    """{conduction: run} of 4 mm of the cut with heat."""
+    """{conduction: run} of 6.4 mm of the cut with heat."""
     folder = tmp_path_factory.mktemp("heated")
-    return {word: cut("cutting_thermal", folder / word, start_up=0.1, snapshot_period=0.05, conduction=word)
+    return {word: cut("cutting_thermal", folder / word, start_up=0.16, snapshot_period=0.05, conduction=word)
             for word in ("true", "false")}
 
 

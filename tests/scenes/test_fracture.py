@@ -7,7 +7,8 @@ import pytest
 
 from rockwear.kernels import brazilian, fracture
 from tests.running import (
-    ROOT, arguments, assert_as_if_never_stopped, assert_refused, history, interrupt_script, refusals, run_script, value)
+    ROOT, arguments, assert_as_if_never_stopped, assert_refused, history, interrupt_script, packing, refusals,
+    run_script, value)
 
 DISC, NOTCHED = ROOT / "yade_scripts/brazilian.py", ROOT / "yade_scripts/toughness.py"
 BLOCK = ROOT / "yade_scripts/toughness_3d.py"
@@ -15,9 +16,9 @@ LATTICE = ROOT / "tests/scenes/scripts/brazilian.py"
 ROCK = dict(radius_min=1e-3, radius_max=1.5e-3, kt=4e9, Rt=0.1e6)
 SMALL = {DISC: dict(ROCK, diameter=0.03, drop=0.3, report="false"),
          NOTCHED: dict(ROCK, size=0.025, speed=0.05, report="false"),
-         BLOCK: dict(radius=1.5e-3, kn=55e6, kt=14e6, size=0.03, speed=0.05, seed=5, report="false")}
+         BLOCK: dict(radius=1.5e-3, kn=55e6, kt=14e6, size=0.03, speed=0.05, seed=packing(5, 2), report="false")}
 """Some 130 and 180 discs, 610 spheres. Of seven packings of these the work at the notch is 0.83 to 1.03 of what is
-dissipated: at the pins of packing 5 the least gives way."""
+dissipated: at the pins of packing 5 the least gives way. On Debian 13 packing 2 is one that a crack runs through."""
 
 
 def run(script, out, *flags, **values):

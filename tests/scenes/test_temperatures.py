@@ -10,8 +10,8 @@ from tests.running import (
 
 RIPPER = ROOT / "yade_scripts/ripper_temperature.py"
 PASSES = {**{name: value for name, value in SMALL.items() if name != "cycles"}, "approach": 1e-4, "start_up": 1e-4,
-          "cycle_time": 5e-4, "long_time": 1.0, "tool_radius_max": 0.52e-3, "wear_acceleration": 1e5,
-          "emissivity": 0.4}
+          "cycle_time": 5e-4, "record_period": 5e-7, "long_time": 1.0, "tool_radius_max": 0.52e-3,
+          "wear_acceleration": 1e5, "emissivity": 0.4}
 
 
 def ripper(out, *flags, **values):
