@@ -159,7 +159,7 @@ class Run:
         """Run to the end. -> exit code."""
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, self._on_signal)
-        ended, code, broken = self.ended or "finished", 0, False
+        ended, code = self.ended or "finished", 0
         try:
             if self.values["resume"]:
                 # What was written may be later than the checkpoint.
@@ -171,8 +171,8 @@ class Run:
         except RunEnded as end:
             ended, code = str(end), 0 if end.healthy else 1
         except BROKEN as error:
-            ended, code, broken = f"{type(error).__name__}: {error}".splitlines()[0], 1, True
-        if self.stopped_by and not broken:
+            ended, code = f"{type(error).__name__}: {error}".splitlines()[0], 1
+        if self.stopped_by and not code:
             print(f"stopped by signal {self.stopped_by} at t = {self.scene.time:.6g} s; --resume continues from here")
             return 128 + self.stopped_by
         return self._finish(ended, code)

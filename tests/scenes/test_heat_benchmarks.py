@@ -29,11 +29,10 @@ def everything(tmp_path_factory):
 @pytest.mark.parametrize("packing", ["random", "square", "triangular"])
 def test_temperatures_are_the_exact_ones_and_converge(everything, packing):
     assert everything.code == 0, everything.stderr
-    # On lattices. Two random packings, of 69 and 286 discs, differ by more than their size: ten pairs, on Debian 12 and
-    # 13, have orders from 1.07 on.
-    least = 1.0 if packing == "random" else 1.7
-    for name in ("slab_source", "half_space", "jump"):
-        assert value(everything, f"{name}_{packing}_order_in_space") > least
+    orders = sorted(value(everything, f"{name}_{packing}_order_in_space") for name in ("slab_source", "half_space",
+                                                                                       "jump"))
+    # Two random packings, of 69 and 286 discs, differ by more than their size: on Debian 13 one of the three is 1.17.
+    assert orders[1 if packing == "random" else 0] > 1.7 and orders[0] > 1.0
     # At 32 diameters across; the default's 80 have a sixth of it. The first instants see a front of few diameters.
     table = errors(everything)
     last = table[(table[:, 1] == ["random", "square", "triangular"].index(packing)) & (table[:, 2] == 32)]
