@@ -16,7 +16,6 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import brentq
 from scipy.spatial import cKDTree
-from scipy.stats import qmc
 
 from rockwear.kernels.checks import ParameterError, positive, require, within
 from rockwear.kernels.polygon import area, check_polygon, nearest, nearest_on_edges, sides
@@ -167,7 +166,7 @@ class _Polygon:
         self.vertices = vertices
         self.low, self.high = vertices.min(0), vertices.max(0)
         self.volume = area(vertices)
-        trial = self.low + qmc.Halton(2, scramble=False).random(4096) * (self.high - self.low)
+        trial = self.low + _halton(2, scramble=False).random(4096) * (self.high - self.low)
         self.inradius = self.depth(trial).max()
         self.sides = sides(vertices)
 
@@ -297,6 +296,12 @@ def _scale_at(radius_scale, points, largest):
     return scale
 
 
+def _halton(dimensions, **options):
+    """scipy's Halton sequence: slow to import, and of no use where packings are kept."""
+    from scipy.stats import qmc
+    return qmc.Halton(dimensions, **options)
+
+
 def _scatter(container, radius, solid, scale_at, rng):
     """Positions (n, d), numbers (n,) in [0, 1) for the radii, and scales (n,) of particles of volume about `solid`.
 
@@ -304,7 +309,7 @@ def _scatter(container, radius, solid, scale_at, rng):
     A point is kept with probability scale^-d, so that the solid volume is uniform.
     """
     dimensions = len(container.low)
-    halton = qmc.Halton(dimensions + 1, seed=rng)
+    halton = _halton(dimensions + 1, seed=rng)
     batch = 1 + int(solid / volumes(radius(0.5), dimensions))
     points, draws, scales = np.empty((0, dimensions)), np.empty(0), np.empty(0)
     filled = np.zeros(1)

@@ -9,7 +9,6 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from scipy.signal import find_peaks
 from scipy.special import stdtrit
 
 from rockwear.kernels.checks import positive, require
@@ -178,6 +177,8 @@ def peaks(distance, values, *, depth, begin=-math.inf):
     typical = np.median(force[:len(force) // stretch * stretch].reshape(-1, stretch).max(axis=1))
     if not typical > 0:
         return Peaks(np.empty(0), np.empty(0))
+    # Slow to import, and of use at the end of a cut only.
+    from scipy.signal import find_peaks
     found, _ = find_peaks(force, distance=LEAST_SPACING * depth / step, prominence=PROMINENCE * typical)
     return Peaks(begin + (found + STEPS / 2) / count * (distance[-1] - begin), force[found])
 

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import yade
 
-from rockwear import __version__, report
+from rockwear import __version__
 from rockwear.run import checkpoint, parameters, run_folder, servers, vtk
 from rockwear.engines import base
 from rockwear.engines.base import RunEnded
@@ -197,6 +197,8 @@ class Run:
                 for line in warnings:
                     print(f"warning: {line}", file=sys.stderr)
                 if not code and self.values["report"]:
+                    # What draws is slow to import, and of no use to a run without a report.
+                    from rockwear import report
                     report.write(self.folder)
                     print(f"report: {self.folder / 'report.html'}")
         except BROKEN as error:
