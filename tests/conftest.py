@@ -20,3 +20,9 @@ def cache(tmp_path_factory):
     if "PYTEST_XDIST_WORKER" in os.environ:
         folder = folder.parent
     os.environ["ROCKWEAR_CACHE"] = str(folder / "cache")
+
+
+@pytest.fixture(scope="session", autouse=True)
+def bytecode():
+    """Modules are compiled once, and not by each of many hundred processes: 0.3 s of each."""
+    os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
