@@ -143,7 +143,7 @@ def test_segments_are_judged_by_the_rules_of_acceleration(worn):
 
 
 def test_a_half_of_the_work_wears_half(worn, tmp_path):
-    run = cut(tmp_path / "out", work_fraction=0.5, reshape="false", cycles=0)
+    run = cut(tmp_path / "out", work_fraction=0.5, reshape="false", cycles=0, report="false")
     friction = run.summary["balances"]["friction"]["worn_by"]
     whole = value(worn, "worn_volume") / worn.summary["balances"]["friction"]["worn_by"]
     assert value(run, "worn_volume") == pytest.approx(0.5 * whole * friction, rel=1e-12, abs=0)
@@ -163,7 +163,7 @@ def test_stopped_and_resumed_equals_never_stopped(worn, tmp_path):
     for number, after in ((signal.SIGKILL, 2), (signal.SIGTERM, 4)):
         stopped = interrupt_script(SEGMENTS, out, number, after, **{**SHORT, "checkpoint_interval": 0.01})
         assert stopped.code in (-signal.SIGKILL, 128 + signal.SIGTERM)
-    resumed = cut(out, "--resume", checkpoint_interval=0.01)
+    resumed = cut(out, "--resume", checkpoint_interval=0.01, report="false")
     assert resumed.code == 0, resumed.stderr
     assert resumed.summary["results"] == worn.summary["results"]
     assert resumed.summary["balances"] == worn.summary["balances"]
@@ -179,8 +179,8 @@ def test_a_particle_inside_the_tool_is_found(pressed, kind):
 
 def test_wear_too_fast_for_the_shape_ends_with_what_to_change(tmp_path):
     # The first that is too fast: it has worn before.
-    runs = ((value, cut(tmp_path / f"{value:g}", wear_acceleration=value, cycles=0))
-            for value in (3e4, 1e5, 3e5, 1e6, 3e6))
+    runs = ((value, cut(tmp_path / f"{value:g}", wear_acceleration=value, cycles=0, report="false"))
+            for value in (1e5, 3e5, 1e6, 3e6))
     wear_acceleration, run = next((value, run) for value, run in runs if run.code)
     assert run.code == 1
     said = next(line for line in run.stderr.splitlines() if line.startswith("error:"))

@@ -96,7 +96,7 @@ def test_a_block_worn_away_ends_in_one_line(tmp_path):
 
 
 def test_stopped_and_resumed_equals_never_stopped(worn, tmp_path):
-    out, options = tmp_path / "out", dict(checkpoint_interval=0.01)
+    out, options = tmp_path / "out", dict(checkpoint_interval=0.01, report="false")
     stopped = interrupt_script(SCRIPT, out, signal.SIGTERM, 3, **options)
     assert stopped.code == 128 + signal.SIGTERM
     assert_as_if_never_stopped(lab(out, "--resume", **options), worn)
