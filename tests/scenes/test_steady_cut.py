@@ -154,14 +154,24 @@ def test_rock_at_rest_stays_at_rest_while_the_window_moves_on(law, tmp_path):
     assert found["damped"] == pytest.approx([0.5, 0.5], rel=1e-3)
 
 
-@pytest.mark.parametrize("values, words", [
+NO_ROOM = [
     (dict(depth_of_cut=0.0131), "depth_of_cut = 0.0131 m"), (dict(window_ahead=0.01), "window_ahead = 0.01 m"),
     (dict(window_behind=0.005), "window_behind = 0.005 m"), (dict(ramp_length=0.02), "cut_length = 0.02 m"),
     (dict(radius_max=2.1e-3), "radius_max = 0.0021 m"), (dict(tooth_height=0.004), "tooth_height = 0.004 m"),
-    (dict(discs_per_depth=2), "discs_per_depth = 2: must be 0 or between 4 and 64")])
-def test_a_cut_that_has_no_room_is_refused(values, words, tmp_path):
-    (code, said), = refusals(SCRIPT, tmp_path, [[*arguments({**SMALL, **values}), "--out", tmp_path / "out"]])
-    assert_refused(code, said, words)
+    (dict(discs_per_depth=2), "discs_per_depth = 2: must be 0 or between 4 and 64"),
+    (dict(rake=-20, wear_flat=8e-3), "tooth_width = 0.01 m")]
+
+
+@pytest.fixture(scope="module")
+def refused(tmp_path_factory):
+    """What the script said to each of NO_ROOM."""
+    folder = tmp_path_factory.mktemp("refused")
+    return refusals(SCRIPT, folder, [arguments({**SMALL, **values, "out": folder / "out"}) for values, _ in NO_ROOM])
+
+
+@pytest.mark.parametrize("case", range(len(NO_ROOM)), ids=[words for _, words in NO_ROOM])
+def test_a_cut_that_has_no_room_is_refused(refused, case):
+    assert_refused(*refused[case], NO_ROOM[case][1])
 
 
 @pytest.mark.parametrize("values, said", [
@@ -174,9 +184,3 @@ def test_rock_too_weak_or_too_strong_and_a_worn_tool_end_well(values, said, tmp_
     assert run.code == 0 and run.summary["ended"] == "finished", run.stderr
     assert said in run.stderr and "Traceback" not in run.stderr
     assert math.isfinite(value(run, "peak_cutting_force")) and not value(run, "long_enough")
-
-
-def test_a_tooth_that_a_wear_flat_leaves_no_room_for_is_refused(tmp_path):
-    (code, said), = refusals(SCRIPT, tmp_path, [[*arguments({**SMALL, "rake": -20, "wear_flat": 8e-3}), "--out",
-                                                 tmp_path / "out"]])
-    assert_refused(code, said, "tooth_width = 0.01 m")
