@@ -123,7 +123,7 @@ def test_a_cut_ends_once_its_mean_force_is_known(tmp_path):
 
 
 def test_sizes_follow_the_depth_of_cut_and_the_rock_follows_its_discs(tmp_path):
-    given = dict(rock="interlocked_sandstone", depth_of_cut=4e-3, discs_per_depth=4, tooth_width=0.01, cut_length=0.02,
+    given = dict(rock="interlocked_sandstone", depth_of_cut=4e-3, discs_per_depth=4, tooth_width=0.01, cut_length=0.012,
                  velocity=8.0, report="false", time_step_fraction=0.45)
     run = run_script(SCRIPT, *arguments(given), "--out", str(tmp_path / "out"), out=tmp_path / "out")
     assert run.code == 0, run.stderr
