@@ -13,10 +13,9 @@ from calibration.benchmarks import one_curve
 from calibration.campaigns.runs import RunFailed, run_script
 
 ERRORS = {"wear": "wear", "tip temperature": "tip temperature", "tool_friction": "friction work at the tool",
-          "rock_friction": "friction work in the rock", "slip in bonds": "work of slip in bonds, and of crushing",
-          "bond_breaking": "energy that bonds dissipate, but in crushing", "rock_crushing": "work of crushing"}
+          "rock_friction": "friction work in the rock"}
 """{what the runs count: words}."""
-WORK = "tool_friction", "rock_friction", "slip in bonds", "bond_breaking", "rock_crushing"
+WORK = "tool_friction", "rock_friction"
 """Those that are J."""
 
 

@@ -35,7 +35,7 @@ SAMPLED = 6000
 
 
 def every_step(scene):
-    """Sample every step from now on. (Slip of bonds is no mere sample: it is taken out of their strains.)"""
+    """Sample every step from now on. (Slip of bonds is none: it is taken out of their strains in every step.)"""
     scene.rock_friction.period = scene.tool.contact.sampling_period = 1
     base.register(scene.engines)
 
@@ -44,9 +44,8 @@ def balances(scene):
     """{what: number} of what the engines add up, by now."""
     balance, heat = scene.output.energy_balance(), scene.heat
     heat.act()
-    return {**{name: balance[name] for name in ("tool_work", "tool_friction", "rock_friction", "bond_breaking",
-                                                "rock_crushing", "residual")},
-            "slip in bonds": float(scene.bonds.by_slip.sum()), "wear": scene.tool.volume_balance()["archard"],
+    return {**{name: balance[name] for name in ("tool_work", "tool_friction", "rock_friction", "residual")},
+            "wear": scene.tool.volume_balance()["archard"],
             "tip temperature": float(heat.tool_temperature().max() - scene.heat_model.tool_temperature),
             "kinetic energy": utils.kineticEnergy()}
 

@@ -8,6 +8,7 @@ import signal
 import sys
 import time
 from contextlib import suppress
+from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
@@ -58,6 +59,8 @@ def main(name, declared, make_scene):
         values = parameters.read(declared, sys.argv[1:])
         folder, identity = run_folder.find(name, values["out"]), _identity(name, values, declared)
         _check_files(folder, values, declared)
+        require(not values["report"] or find_spec("matplotlib"), "report", True,
+                "false where Debian's python3-matplotlib is missing")
         if values["resume"]:
             checkpoint.load(folder / "checkpoint", identity)
         scene = make_scene(values)
