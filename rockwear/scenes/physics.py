@@ -44,7 +44,8 @@ class ToolWear:
         """{name: (value, unit)}: the two rules for accelerated wear [Rocky], judged from the run's own record."""
         engine = tool.wear_engine
         error = distribution_error(tool.profile.increments)
-        events = events_per_particle(events=engine.events, worn=engine.worn, limit=engine.limit)
+        kept = self.removal == "none"
+        events = math.inf if kept else events_per_particle(events=engine.events, worn=engine.worn, limit=engine.limit)
         trusted = trusted_wear_acceleration(wear_acceleration=self.acceleration, error=error, events=events,
                                             tolerance=self.tolerance)
         return {"wear_distribution_error": (error, "-"), "contact_events_per_particle": (events, "-"),
@@ -65,11 +66,14 @@ class ToolWear:
         error, events, trusted = (value for value, _ in self.trust(tool).values())
         if math.isnan(events) or (math.isfinite(error) and trusted >= self.acceleration):
             return []
-        known = ("cannot be told from a run as short as this" if not math.isfinite(error) else
-                 f"is known to {100 * error:.2g} % only")
-        advice = "run longer" if trusted >= self.acceleration else (
-            f"use wear_acceleration = {_two_digits(trusted)} at most instead of {self.acceleration:g}, and run that "
-            "much longer")
+        if not math.isfinite(error):
+            known = "cannot be told from a run as short as this"
+        else:
+            known = f"is known to {100 * error:.2g} %" + " only" * (error > self.tolerance)
+        longer = self.acceleration <= max(trusted, 1.0) or self.removal == "none"
+        advice = "run longer" if longer else (
+            f"use wear_acceleration = {_two_digits(max(trusted, 1.0))} at most instead of {self.acceleration:g}, and run "
+            "that much longer")
         goes = f", and {tool.piece} goes in {_two_digits(events)} contact events" if math.isfinite(events) else ""
         return [f"where the tool wears {known}{goes}: to trust the "
                 f"distribution of wear to {100 * self.tolerance:g} %, {advice}"]

@@ -8,6 +8,7 @@ from rockwear.model.facet_tool import read_stl, write_stl
 from rockwear.kernels.boundary import check_boundary, distance, volume
 from rockwear.report.folder import RunFolder, read_history
 from rockwear.report.views import wear_triangles
+from rockwear.report.views.key_results import wear_tiles
 
 from tests.running import (
     BLOCK, BLOCK_OF_TRIANGLES, ROOT, arguments, assert_as_if_never_stopped, assert_refused, checks_of, history,
@@ -161,6 +162,7 @@ def test_one_mode_of_several_wears_and_is_judged_like_archards_law(blunted, tmp_
     for name in ("worn_volume", "wear_distribution_error", "trusted_wear_acceleration"):
         assert value(run, name) == pytest.approx(value(blunted, name), rel=1e-6, abs=0)
     assert (run.out / "tool.stl").exists()
+    assert wear_tiles(RunFolder(run.out))
 
 
 def test_contacts_that_pass_to_facets_given_elsewhere_bring_no_energy(tmp_path):

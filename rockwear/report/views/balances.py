@@ -47,5 +47,7 @@ def balance_table(run, name):
         return ""
     reference = REFERENCES.get(name)
     whole = balance.get(reference, 0.0)
-    rows = [(words(entry), number(value), percent(value, whole)) for entry, value in balance.items() if entry != "unit"]
+    # Nothing to compare: what there was at first is millions of times what has worn.
+    rows = [(words(entry), number(value), "–" if entry == "initial" else percent(value, whole))
+            for entry, value in balance.items() if entry != "unit"]
     return table(rows, ("", balance.get("unit", ""), f"of {words(reference)}" if reference else ""), name)

@@ -93,7 +93,8 @@ def crack_tile(run):
 
 def wear_tiles(run):
     """Wear of the tool; none where nothing could wear."""
-    no_wear = 0 in (run.parameters.get("wear_acceleration"), run.parameters.get("wear_coefficient"))
+    coefficient = "wear_modes" if run.parameters.get("wear_law") == "modes" else "wear_coefficient"
+    no_wear = 0 in (run.parameters.get("wear_acceleration"), run.parameters.get(coefficient))
     if no_wear or math.isfinite(run.result("k_given")):
         return []
     removed, kept = run.result("particles_removed"), keeps_shape(run)
