@@ -63,13 +63,18 @@ ROCKS = {
         "no crushing": dict(bond_crushing=0.0),
         "crushing 150 MPa": dict(bond_crushing=150e6),
         "no grains": dict(grain_edge=0.0),
+        "grains of 1.6 mm, 3 times as strong": dict(HALF, grain_edge=1.6e-3, grain_strength=3.0),
+        "grains of 1.6 mm, 6 times as strong": dict(HALF, grain_edge=1.6e-3, grain_strength=6.0),
+        "grains of 3.2 mm, 3 times as strong": dict(HALF, grain_edge=3.2e-3, grain_strength=3.0),
         "Weibull modulus 2": dict(weibull_modulus=2.0),
         "fracture energy 30": dict(bond_fracture_energy=30.0),
         "fracture energy 5": dict(bond_fracture_energy=5.0)}.items()}}
 """Rocks that are cut as the base is, at other depths of cut too: finer discs make another rock."""
 HALVED, STRONGER, BENTHEIM, MEDIUM, PADOVA, NO_GRAINS = (f"{EIGHT}, {name}" for name in (
     "strengths halved", "strengths times 1.4", "bentheim", "medium_sandstone", "p_sandstone", "no grains"))
-PULLED = BASE, HALVED, STRONGER, BENTHEIM, MEDIUM, PADOVA
+THAT_BREAK = tuple(case for case in ROCKS if "times as strong" in case)
+"""Larger grains than those of the base, which break."""
+PULLED = BASE, HALVED, STRONGER, BENTHEIM, MEDIUM, PADOVA, *THAT_BREAK
 """Rocks that are pulled in the laboratory, too; the others have the bonds of the base."""
 CHANGES = {
     "velocity 4 m/s": SLOWER,
@@ -87,6 +92,7 @@ CHANGES = {
     "wear flat 1 mm": dict(wear_flat=1e-3),
     "wear flat 2 mm": dict(wear_flat=2e-3),
     "tool friction 0.6": dict(tool_mu=0.6),
+    "not damped": dict(background_damping=0.0),
     "damping 5000 1/s": dict(background_damping=5e3),
     "damping 30000 1/s": dict(background_damping=3e4),
     "grains not damped": dict(grain_quality=0.0),
