@@ -99,6 +99,9 @@ def put_loop_with_facets(*, rock, tool, damping=0.0, ratcheting_free=True):
     YADE puts a facet first into its contacts, and has no functor for (tool, rock) in this order. Tool and loose rock
     are of one kind here, FrictViscoMat, and the constants go by the pair of materials; rock has no dashpot. One law
     then keeps one sum of plastic dissipation, which engines.facet_contact divides.
+
+    A loaded scene looks again for the functor of each contact it has, by the materials of now: of loose rock and its
+    support of a boundary it finds the last one, which leaves a contact as it is.
     """
     loose, steel = O.materials["loose rock"].id, O.materials["steel"].id
 
@@ -107,7 +110,7 @@ def put_loop_with_facets(*, rock, tool, damping=0.0, ratcheting_free=True):
 
     parameters = [Ip2_FrictViscoMat_FrictViscoMat_FrictViscoPhys(
         kn=by_pair(rock.kn, tool.kn), kRatio=by_pair(rock.kt / rock.kn, tool.kt / tool.kn),
-        frictAngle=by_pair(math.atan(rock.mu), math.atan(tool.mu)))]
+        frictAngle=by_pair(math.atan(rock.mu), math.atan(tool.mu))), Ip2_FrictMat_FrictMat_FrictPhys()]
     geometry = [Ig2_Sphere_Sphere_ScGeom(avoidGranularRatcheting=ratcheting_free), Ig2_Facet_Sphere_ScGeom()]
     _put_engines([Bo1_Sphere_Aabb(), Bo1_Facet_Aabb()], geometry, parameters,
                  [Law2_ScGeom_FrictViscoPhys_CundallStrackVisco(traceEnergy=True)], damping)

@@ -115,6 +115,18 @@ def checkpoint_stage(out):
         return -1
 
 
+def test_segments_in_a_window_meet_the_same_rock_in_each_turn(tmp_path):
+    """Each cut after the first begins in a loaded scene, where YADE looks again for what makes each contact."""
+    given = dict(window="true", window_ahead=0.2, feed=0.04, tool="segments", segment=0.01, reshape="false",
+                 heat="false", cut_time=0.009, cycles=2, cooling_period=1, record_period=1e-3, seed=1, report="false")
+    run = run_script(SCRIPT, *arguments(given), "--out", str(tmp_path / "out"), out=tmp_path / "out")
+    assert run.code == 0, run.stderr
+    rows = stages(run)
+    assert rows[1]["tool_work"][-1] > 0
+    for name in ("cutting_force", "thrust_force", "kinetic_energy"):
+        assert np.array_equal(rows[1][name], rows[3][name])
+
+
 IN_WINDOW = dict(window="true")
 REFUSED = [
     (dict(cut_time=4), "cut_time = 4"), (dict(feed=0.01), "feed = 0.01"), (dict(backing=0.01), "backing = 0.01"),

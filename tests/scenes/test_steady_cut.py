@@ -22,11 +22,16 @@ LAWS = {"brittle": dict(seed=7),
                          bond_cohesion=8.5e6, bond_shear_energy=500.0)}
 
 
-def steady_cut(out, *flags, **values):
+def small(values):
+    """The parameters of SMALL with these values, without those of particles for a tool of segments."""
     given = {**SMALL, **values}
     if given.get("tool") == "segments":
         given = {name: value for name, value in given.items() if not name.startswith("tool_radius")}
-    return run_script(SCRIPT, *arguments(given), "--out", str(out), *flags, out=out)
+    return given
+
+
+def steady_cut(out, *flags, **values):
+    return run_script(SCRIPT, *arguments(small(values)), "--out", str(out), *flags, out=out)
 
 
 @pytest.fixture(scope="module", params=LAWS)
@@ -98,6 +103,17 @@ def test_a_cut_goes_on_as_if_it_was_never_stopped(never, tmp_path):
     assert stopped.code == 128 + signal.SIGTERM, stopped.stderr
     resumed = steady_cut(out, "--resume", **never.options, checkpoint_interval=0.01)
     assert_as_if_never_stopped(resumed, never, *tables)
+
+
+def test_a_cut_by_segments_goes_on_as_if_it_was_never_stopped(tmp_path):
+    """In a loaded scene YADE looks again for what makes each contact, those of the boundary among them."""
+    options = dict(tool="segments", segment=1e-3, ramp_length=1e-3, cut_length=0.003, seed=3)
+    never = steady_cut(tmp_path / "never", **options)
+    assert never.code == 0 and value(never, "tensile_cracks") > 0, never.stderr
+    stopped = interrupt_script(SCRIPT, tmp_path / "out", signal.SIGTERM, 2,
+                               **small({**options, "checkpoint_interval": 0.01}))
+    assert stopped.code == 128 + signal.SIGTERM, stopped.stderr
+    assert_as_if_never_stopped(steady_cut(tmp_path / "out", "--resume", **options), never, "cracks.csv")
 
 
 def test_segments_go_as_far_and_the_process_takes_as_long_as_it_is_slower(tmp_path):
