@@ -72,8 +72,8 @@ class ToolWear:
             known = f"is known to {100 * error:.2g} %" + " only" * (error > self.tolerance)
         longer = self.acceleration <= max(trusted, 1.0) or self.removal == "none"
         advice = "run longer" if longer else (
-            f"use wear_acceleration = {_two_digits(max(trusted, 1.0))} at most instead of {self.acceleration:g}, and run "
-            "that much longer")
+            f"use wear_acceleration = {_two_digits(max(trusted, 1.0))} at most instead of {self.acceleration:g}, and "
+            "run that much longer")
         goes = f", and {tool.piece} goes in {_two_digits(events)} contact events" if math.isfinite(events) else ""
         return [f"where the tool wears {known}{goes}: to trust the "
                 f"distribution of wear to {100 * self.tolerance:g} %, {advice}"]
