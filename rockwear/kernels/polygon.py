@@ -16,6 +16,7 @@ ARC_CHORD_ERROR = 1e-3  # sagitta of the chords that replace an arc, as a fracti
 CORNER = math.radians(10)  # a vertex at which the direction changes by more is a corner
 MAX_VERTICES = 4000  # of a file: the test for simple polygons compares all pairs of edges
 OTHER_UNITS = {"mm", "cm", "um", "µm", "in", "inch", "ft"}  # that the head of a file may not name
+LEVEL = 1e-6  # vertices of which the coordinates differ by a smaller part of the extent lie at one level
 CHUNK = 2_000_000  # point-edge pairs processed together: some 100 MB of temporaries
 
 
@@ -239,10 +240,15 @@ def _check_header(path, row):
     require(not other, "outline", f"{path}, {','.join(row)}", "in m")
 
 
-def tip(vertices):
-    """(2,) m, the tip of a tool that moves in +x: the foremost of its lowest vertices (n, 2 or 3) m."""
+def tip_vertex(vertices):
+    """Number of the vertex at the tip of a tool that moves in +x: the foremost of its lowest ones (n, 2 or 3) m."""
     x, y = vertices[:, 0], vertices[:, 1]
-    return np.array([x[y < y.min() + 1e-6 * np.ptp(y)].max(), y.min()])
+    return int(np.argmax(np.where(y < y.min() + LEVEL * np.ptp(y), x, -np.inf)))
+
+
+def tip(vertices):
+    """(2,) m, the tip of a tool of vertices (n, 2 or 3) m: as far in front as tip_vertex, as low as the lowest one."""
+    return np.array([vertices[tip_vertex(vertices), 0], vertices[:, 1].min()])
 
 
 def reach(polygon, heights):
@@ -265,14 +271,14 @@ def nearest_arc(points, along, arc):
 
 
 def contour(outline, spacing):
-    """Points (n, 2) m every `spacing` m along a polygon (k, 2) m, and their arc length (n,) m from its lowest vertex.
+    """Points (n, 2) m every `spacing` m along a polygon (k, 2) m, and their arc length (n,) m from its tip.
 
     The arc length is positive up the front (greater x) and negative along the clearance face; ascending.
     """
     x, y = outline.T
     if np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)) < 0:
         outline = outline[::-1]
-    closed = np.roll(outline, -int(np.argmin(outline[:, 1])), axis=0)
+    closed = np.roll(outline, -tip_vertex(outline), axis=0)
     closed = np.vstack([closed, closed[:1]])
     way = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(closed, axis=0), axis=1))])
     arc = np.arange(0, way[-1], spacing)

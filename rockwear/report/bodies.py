@@ -3,6 +3,7 @@ import numpy as np
 from matplotlib.colors import to_rgba
 from scipy.spatial import cKDTree
 
+from rockwear.kernels import polygon
 from rockwear.kernels.boundary import area_vectors, distance, volume
 from rockwear.kernels.rigid_motion import Pose
 from rockwear.report import palette, shapes
@@ -97,8 +98,8 @@ def gap(run, points, shot=None):
 
 
 def tip(run):
-    """(2,) m, lowest point of the new outline, in the tool's own frame."""
-    return run.model["outline"][np.argmin(run.model["outline"][:, 1])]
+    """(2,) m, tip of the new outline, in the tool's own frame."""
+    return polygon.tip(run.model["outline"])
 
 
 def facet_depth(run, shot):

@@ -9,7 +9,7 @@ from rockwear.kernels.bond_laws import BOND_LAWS
 from rockwear.kernels.checks import require
 from rockwear.kernels.parameter import (
     Fixed, Group, Parameter, above_zero, duration, flag, integer, law_parameters, length, number)
-from rockwear.kernels.polygon import nearest_on_edges
+from rockwear.kernels.polygon import nearest_on_edges, tip
 from rockwear.kernels.rigid_motion import SwingAndRotation
 from rockwear.kernels.strip import ArcStrip
 from rockwear.model.rock import CutOut, Specimen
@@ -154,11 +154,11 @@ class Track:
     """The path of the pick through the rock, and of the pick before it. vertices: (k, 2) m, the pick's outline."""
 
     def __init__(self, v, vertices):
-        tip = self.tip = vertices[np.argmin(vertices[:, 1])]
+        self.tip = tip(vertices)
         parts.check_height(v, vertices, "feed", v.feed)
         edge = np.linspace(vertices, np.roll(vertices, -1, axis=0), 50).reshape(-1, 2)
-        front = edge[edge[:, 1] < tip[1] + v.feed, 0].max() - tip[0]
-        self.pivot = tip + (0.0, v.cutter_radius)
+        front = edge[edge[:, 1] < self.tip[1] + v.feed, 0].max() - self.tip[0]
+        self.pivot = self.tip + (0.0, v.cutter_radius)
         self.ahead = (v.approach + v.radius_max + front) / v.cutter_radius
         """rad by which the pick starts before its entry."""
         self.begin = math.radians(v.entry_angle) - self.ahead

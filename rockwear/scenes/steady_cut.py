@@ -12,7 +12,7 @@ from rockwear.kernels.cut_sizes import cut_sizes
 from rockwear.kernels.fragments import chip_length
 from rockwear.kernels.groove import groove_results
 from rockwear.kernels.parameter import Group, Parameter, Presets, choice, length, length_or_zero, number, zero_or
-from rockwear.kernels.polygon import reach
+from rockwear.kernels.polygon import reach, tip
 from rockwear.kernels.rigid_motion import Straight
 from rockwear.kernels.steady_record import (
     CELL, ENOUGH_CHIPS, LONG_ENOUGH, is_known, steady_results, uncertainty, with_error)
@@ -123,9 +123,8 @@ def above_groove(rock, outline, path, slope):
     (x, y), r = rock.positions.T, rock.radii
     heights = np.linspace(-1.0, 1.0, 9)[:, None] * r + y
     front = np.where(heights > path, reach(outline, np.maximum(heights, path)), -np.inf).max(axis=0)
-    tip = float(outline[np.argmin(outline[:, 1]), 0])
     # How far a disc reaches above the plane.
-    over = (y - path) * math.cos(slope) - (x - tip) * math.sin(slope) + r
+    over = (y - path) * math.cos(slope) - (x - tip(outline)[0]) * math.sin(slope) + r
     return (y + r > path) & ((x - r < front) | (over > 0))
 
 

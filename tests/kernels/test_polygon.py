@@ -140,6 +140,32 @@ def test_a_wear_flat_is_cut_off_the_clearance_face():
     assert outline.area(level) - outline.area(shape) == pytest.approx(0.5 * behind**2 * math.tan(0.15))
 
 
+FLAT = np.array([[0.0, 0], [1, 0], [2, 0], [3, 2], [0, 2]])
+
+
+@pytest.mark.parametrize("raised", [(0, 0, 0), (1e-18, 0, 2e-18), (0, 1e-7, 1e-7)])
+def test_the_tip_is_the_front_end_of_a_flat_whatever_vertex_is_the_first(raised):
+    """Also where round-off has raised it above the other vertices of the flat."""
+    level = FLAT + np.pad(np.outer(raised, [0, 1]), [(0, 2), (0, 0)])
+    for turned in (level, level[::-1]):
+        for begin in range(len(level)):
+            vertices = np.roll(turned, begin, axis=0)
+            assert outline.tip(vertices).tolist() == [2, 0]
+            points, arc = outline.contour(vertices, 0.125)
+            assert points[arc == 0] == pytest.approx(np.array([[2, 0]]), abs=1e-6)
+            flat = points[:, 1] < 1e-6
+            assert flat.sum() == 17 and arc[flat] == pytest.approx(points[flat, 0] - 2, abs=1e-6)
+            assert points[arc == 1.5] == pytest.approx(np.array([[2, 0] + 1.5 * np.sqrt([0.2, 0.8])]), abs=1e-6)
+
+
+def test_the_tip_of_a_worn_tooth_is_ahead_of_its_flat():
+    shape = outline.tooth(**TOOTH, wear_flat=0.004)
+    points, arc = outline.contour(shape, 1e-4)
+    flat = points[:, 1] < 1e-12
+    assert outline.tip(shape) == pytest.approx([-0.002, 0], abs=1e-15)
+    assert flat.sum() > 40 and arc[flat] == pytest.approx(points[flat, 0] + 0.002, abs=1e-9)
+
+
 @pytest.mark.parametrize("text", ["x,y\n0,0\n0,2\n2,2\n2,0\n", "0,0\n2,0\n2,2\n0,2\n0,0\n",
                                   "# a square\n\n x [m], y [m]\n0, 0\n2, 0\n2, 2\n\n0, 2\n"])
 def test_read_outline(tmp_path, text):

@@ -20,7 +20,7 @@ def outlines(run):
     source = ", as in [Rojek 2014, fig. 17]" if turns(run) else ""
     points = " Each point is a vertex." if has_facets(run) else ""
     return Section(f"Shape of the tool{source}", "Dashed: the new tool. Worn depth is the distance from the new "
-                   f"contour to what is left; arc length counts from the lowest point, positive up the front.{points}",
+                   f"contour to what is left; arc length counts from the tip, positive up the front.{points}",
                    [save(run, "shape", figure(run))])
 
 

@@ -16,7 +16,7 @@ def wear_segments(run):
         return None
     kept = " The tool keeps its shape." if keeps_shape(run) else ""
     return Section("Wear along the tool", "Volume worn off each segment so far, over its length when new, along the "
-                   "new outline: zero at the lowest point, positive up the front; a tall single segment is one contact "
+                   "new outline: zero at the tip, positive up the front; a tall single segment is one contact "
                    f"that slid under load. Right: the same, at the end, as a band on the tool.{kept}",
                    [save(run, "wear", figure(run))])
 
