@@ -229,6 +229,17 @@ def _squared_distances(points, triangles):
     return np.where(between, np.einsum("nd,nd->n", away[:, 0], normal)**2, to_side)
 
 
+def foremost(vertices, facets, below):
+    """Largest x (m) of what the facets have below the height y = `below` (m) or at it, -inf for nothing below it."""
+    x, y = vertices[:, 0], vertices[:, 1]
+    low = y < below
+    # Of a closed boundary each edge is there in both senses, in one of which it rises.
+    edges = np.stack([facets, np.roll(facets, -1, axis=1)]).reshape(2, -1)
+    begin, end = edges[:, low[edges[0]] & ~low[edges[1]]]
+    crossing = x[begin] + (below - y[begin]) / (y[end] - y[begin]) * (x[end] - x[begin])
+    return float(np.concatenate([x[low], crossing]).max(initial=-np.inf))
+
+
 def segments(polygon):
     """(vertices, facets) of a polygon (k, 2) m, one segment for each side. Raises as check_polygon."""
     corners = check_polygon(polygon)

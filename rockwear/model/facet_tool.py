@@ -4,7 +4,7 @@ import warnings
 
 import numpy as np
 
-from rockwear.kernels.boundary import area_vectors, check_boundary, distance, refine, segments
+from rockwear.kernels.boundary import area_vectors, check_boundary, distance, foremost, refine, segments
 from rockwear.kernels.checks import ParameterError, positive, require
 from rockwear.kernels.polygon import perimeter
 from rockwear.kernels.worn_boundary import WornBoundary
@@ -75,9 +75,8 @@ class FacetTool:
         return distance(self.boundary.vertices, self.first, self.first_facets)
 
     def foremost(self, below):
-        """Largest x that vertices have below the height `below` (both m, in the tool's own frame), -inf for none."""
-        vertices = self.boundary.vertices
-        return float(vertices[vertices[:, 1] < below, 0].max(initial=-np.inf))
+        """Largest x that the tool has below the height `below` (both m, in its own frame), -inf for none."""
+        return foremost(self.boundary.vertices, self.boundary.facets, below)
 
 
 def corners(vertices, facets):

@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 
 from rockwear.kernels.bond_laws import BOND_LAWS
+from rockwear.kernels.boundary import foremost, segments
 from rockwear.kernels.checks import require
 from rockwear.kernels.parameter import (
     Fixed, Group, Parameter, above_zero, duration, flag, integer, law_parameters, length, number)
@@ -156,8 +157,7 @@ class Track:
     def __init__(self, v, vertices):
         self.tip = tip(vertices)
         parts.check_height(v, vertices, "feed", v.feed)
-        edge = np.linspace(vertices, np.roll(vertices, -1, axis=0), 50).reshape(-1, 2)
-        front = edge[edge[:, 1] < self.tip[1] + v.feed, 0].max() - self.tip[0]
+        front = foremost(*segments(vertices), self.tip[1] + v.feed) - self.tip[0]
         self.pivot = self.tip + (0.0, v.cutter_radius)
         self.ahead = (v.approach + v.radius_max + front) / v.cutter_radius
         """rad by which the pick starts before its entry."""

@@ -3,7 +3,7 @@ import numpy as np
 import pytest
 
 from rockwear.kernels.boundary import (
-    altitudes, check_boundary, crossings, distance, nearest_on_triangle, prism, refine, segments, volume)
+    altitudes, check_boundary, crossings, distance, foremost, nearest_on_triangle, prism, refine, segments, volume)
 from rockwear.kernels.checks import ParameterError
 from tests.kernels.shapes import SQUARE, TOOTH, cube, exact_volume, ring, sphere
 
@@ -138,3 +138,19 @@ def test_worn_depth_is_the_recession_of_a_face_whatever_way_its_vertices_went(di
     assert inside.any() and top.any()
     assert depth[front] == pytest.approx(np.full(front.sum(), 2e-3), rel=1e-12)
     assert depth[~front] == pytest.approx(np.zeros((~front).sum()), abs=1e-15)
+
+
+# ---- where it ends in front
+
+@pytest.mark.parametrize("extent", [segments, lambda polygon: prism(polygon, 0.02, 1.0)])
+def test_the_foremost_of_a_leaning_face_is_where_its_edge_crosses_the_height(extent):
+    """Whatever the length of its edges; a face that leans back ends at its foot."""
+    forwards, level = extent(np.array([[0, 0], [1, 2], [0, 2.0]])), [0.5, 0.75, 2.0, 3.0]
+    assert [foremost(*forwards, below=y) for y in level] == [0.25, 0.375, 1.0, 1.0]
+    backwards = extent(np.array([[0, 0], [1, 0], [0, 2.0]]))
+    assert [foremost(*backwards, below=y) for y in level] == [1.0, 1.0, 1.0, 1.0]
+    assert foremost(*backwards, below=0.0) == -np.inf
+
+
+def test_the_foremost_of_a_face_with_a_bulge_is_a_vertex():
+    assert foremost(*segments(np.array([[0, 0], [3, 1], [1, 3], [0, 3.0]])), below=2.0) == 3.0

@@ -96,3 +96,10 @@ def test_top_and_back_are_fixed_to_the_shank():
     top, back = tool.first[tool.first[:, 1] > 0.07 - 1e-12], tool.first[tool.first[:, 0] < rear]
     assert sides == pytest.approx(np.ptp(top[:, 0]) + np.ptp(back[:, 1]), rel=1e-9)
     assert tool.foremost(below=0.01) == pytest.approx(0.0, abs=1e-4)
+
+
+def test_a_tool_that_leans_forwards_ends_in_front_as_far_whatever_its_segments():
+    leaning = tooth(height=0.03, width=0.025, rake=-math.radians(30), clearance=math.radians(3), tip_radius=1e-3)
+    found = [FacetTool.of_outline(leaning, segment=size, density=7830.0).foremost(below=0.01) for size in (1e-3, 0.1)]
+    exact = leaning[:, 0].max() - 0.02 * math.tan(math.radians(30))
+    assert found == pytest.approx([exact, exact], rel=1e-12)
