@@ -118,7 +118,7 @@ def checkpoint_stage(out):
 def test_segments_in_a_window_meet_the_same_rock_in_each_turn(tmp_path):
     """Each cut after the first begins in a loaded scene, where YADE looks again for what makes each contact."""
     given = dict(window="true", window_ahead=0.2, feed=0.04, tool="segments", segment=0.01, reshape="false",
-                 heat="false", cut_time=0.009, cycles=2, cooling_period=1, record_period=1e-3, seed=1, report="false")
+                 heat="false", cut_time=0.012, cycles=2, cooling_period=1, seed=1, report="false")
     run = run_script(SCRIPT, *arguments(given), "--out", str(tmp_path / "out"), out=tmp_path / "out")
     assert run.code == 0, run.stderr
     rows = stages(run)

@@ -107,7 +107,7 @@ def test_a_cut_goes_on_as_if_it_was_never_stopped(never, tmp_path):
 
 def test_a_cut_by_segments_goes_on_as_if_it_was_never_stopped(tmp_path):
     """In a loaded scene YADE looks again for what makes each contact, those of the boundary among them."""
-    options = dict(tool="segments", segment=1e-3, ramp_length=1e-3, cut_length=0.003, seed=3)
+    options = dict(tool="segments", segment=1e-3, ramp_length=1e-3, cut_length=0.004, seed=3)
     never = steady_cut(tmp_path / "never", **options)
     assert never.code == 0 and value(never, "tensile_cracks") > 0, never.stderr
     stopped = interrupt_script(SCRIPT, tmp_path / "out", signal.SIGTERM, 2,
