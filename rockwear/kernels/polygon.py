@@ -93,6 +93,33 @@ def check_polygon(polygon, name="polygon"):
     return p if signed_area(p) > 0 else p[::-1].copy()
 
 
+def thinned(polygon, off):
+    """The polygon (k, 2) m without vertices at most `off` (m) from the edges then left, by Douglas and Peucker's rule.
+
+    Both ends of what lies on each side of its bounding box are kept, and so are its extent, a flat and its tip. Between
+    two vertices kept the one furthest from the line between them is kept too, as long as it is further than `off`.
+    """
+    count, kept = len(polygon), np.zeros(len(polygon), bool)
+    for seen in (polygon, -polygon):
+        for axis in (0, 1):
+            level = np.flatnonzero(seen[:, axis] < seen[:, axis].min() + LEVEL * np.ptp(seen[:, axis]))
+            along = seen[level, 1 - axis]
+            kept[level[[along.argmin(), along.argmax()]]] = True
+    ends = np.flatnonzero(kept)
+    runs = list(zip(ends, np.append(ends[1:], ends[0] + count)))
+    while runs:
+        first, last = runs.pop()
+        between = polygon[np.arange(first + 1, last) % count]
+        start, end = polygon[first % count], polygon[last % count]
+        away = np.linalg.norm(between - nearest_on_edges(between, start[None], (end - start)[None])[0], axis=1)
+        if away.max(initial=0.0) > off:
+            # Of a side along the line the first: in spite of round-off its end.
+            furthest = first + 1 + int(np.argmax(away > (1 - LEVEL) * away.max()))
+            kept[furthest % count] = True
+            runs += [(first, furthest), (furthest, last)]
+    return polygon[kept]
+
+
 def _chunks(points, edges):
     step = max(1, CHUNK // edges)
     return [slice(first, first + step) for first in range(0, len(points), step)]

@@ -6,12 +6,16 @@ import numpy as np
 
 from rockwear.kernels.boundary import area_vectors, check_boundary, distance, foremost, refine, segments
 from rockwear.kernels.checks import ParameterError, positive, require
-from rockwear.kernels.polygon import perimeter
+from rockwear.kernels.polygon import area, check_polygon, perimeter, thinned
 from rockwear.kernels.worn_boundary import WornBoundary
 
 
 MOST_FACETS = 20_000
 """A tool may have: by then an update of its wear takes seconds."""
+
+
+CUT_OFF = 1e-3
+"""Largest distance of a vertex left out from the outline, over the length of a segment."""
 
 
 def check_size(name, size, least):
@@ -39,9 +43,14 @@ class FacetTool:
 
     @classmethod
     def of_outline(cls, polygon, *, segment, density):
-        """Segments of at most `segment` m along a polygon (k, 2), longer ones cut in halves."""
+        """Segments of at most `segment` m along a polygon (k, 2), longer ones cut in halves.
+
+        Vertices that stand closer than its shape needs are left out: no more than CUT_OFF of `segment` is cut off the
+        outline, and of its area no more than that part.
+        """
         check_size("segment", segment, perimeter(polygon) / MOST_FACETS)
-        vertices, facets = refine(*segments(polygon), positive("segment", segment, "m"))
+        off = CUT_OFF * min(positive("segment", segment, "m"), area(polygon) / perimeter(polygon))
+        vertices, facets = refine(*segments(thinned(check_polygon(polygon), off)), segment)
         return cls(vertices=vertices, facets=facets, density=density)
 
     @property

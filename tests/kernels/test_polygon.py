@@ -140,6 +140,17 @@ def test_a_wear_flat_is_cut_off_the_clearance_face():
     assert outline.area(level) - outline.area(shape) == pytest.approx(0.5 * behind**2 * math.tan(0.15))
 
 
+def test_thinning_keeps_corners_and_drops_what_lies_between():
+    edge = np.linspace(0, 2, 41)[:-1, None]
+    drawn = np.vstack([a + (b - a) * edge / 2 for a, b in zip(ELL, np.roll(ELL, -1, axis=0))])
+    assert outline.thinned(drawn, 1e-6).tolist() == ELL.tolist()
+    bent = np.array([[0.0, 0], [1, -0.1], [2, 0], [2.1, 1], [2, 2], [0, 2]])
+    assert outline.thinned(bent, 0.099).tolist() == bent.tolist()
+    # Both lie at the outer sides of the bounding box, where nothing is cut off.
+    inwards = np.array([[0.0, 0], [1, 0.1], [2, 0], [2, 2], [0, 2]])
+    assert len(outline.thinned(inwards, 0.099)) == 5 and len(outline.thinned(inwards, 0.101)) == 4
+
+
 FLAT = np.array([[0.0, 0], [1, 0], [2, 0], [3, 2], [0, 2]])
 
 

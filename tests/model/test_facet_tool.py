@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from rockwear.model.facet_tool import FacetTool, corners, incentres, read_stl, write_stl
-from rockwear.kernels.boundary import nearest_on_triangle, prism, volume
+from rockwear.kernels.boundary import distance, nearest_on_triangle, prism, volume
 from rockwear.kernels.checks import ParameterError
-from rockwear.kernels.polygon import tooth
+from rockwear.kernels.polygon import area, perimeter, tooth
 
 
 TOOTH = tooth(height=0.07, width=0.045, rake=0.1, clearance=math.radians(5), tip_radius=4e-3)
@@ -103,3 +103,56 @@ def test_a_tool_that_leans_forwards_ends_in_front_as_far_whatever_its_segments()
     found = [FacetTool.of_outline(leaning, segment=size, density=7830.0).foremost(below=0.01) for size in (1e-3, 0.1)]
     exact = leaning[:, 0].max() - 0.02 * math.tan(math.radians(30))
     assert found == pytest.approx([exact, exact], rel=1e-12)
+
+
+def finely(polygon, spacing):
+    """The polygon with so many m between vertices, its own among them."""
+    edges = zip(polygon, np.roll(polygon, -1, axis=0))
+    return np.vstack([np.linspace(p, q, math.ceil(np.linalg.norm(q - p) / spacing), endpoint=False) for p, q in edges])
+
+
+def in_order(vertices):
+    """The vertices in an order of their own, without round-off."""
+    return np.unique(vertices.round(12), axis=0)
+
+
+SHARP = tooth(height=0.07, width=0.045, rake=0.1, clearance=math.radians(5), tip_radius=0, wear_flat=4e-3)
+
+
+@pytest.mark.parametrize("size", [1e-3, 4e-3])
+def test_segments_do_not_depend_on_how_finely_straight_sides_are_drawn(size):
+    fine, few = finely(SHARP, 0.12e-3), FacetTool.of_outline(SHARP, segment=size, density=7830.0)
+    assert len(fine) > 1500
+    for vertices in (fine, np.roll(fine, 700, axis=0), fine[::-1]):
+        tool = FacetTool.of_outline(vertices, segment=size, density=7830.0)
+        np.testing.assert_allclose(in_order(tool.first), in_order(few.first), atol=1e-15)
+        assert tool.boundary.fixed.sum() == few.boundary.fixed.sum()
+
+
+def test_a_round_tip_drawn_finely_has_as_many_segments_as_its_shape_needs():
+    """Arcs within a thousandth of a segment of their chords; corners, extent and area of the outline."""
+    radius, size, turn = 4e-3, 1e-3, np.linspace(-math.pi / 2, 0, 1500)
+    arc = radius * np.column_stack([np.cos(turn) - 1, np.sin(turn) + 1])
+    outline = np.vstack([[[-0.045, 0]], arc, [[0, 0.07], [-0.045, 0.07]]])
+    tool = FacetTool.of_outline(finely(outline, 0.2e-3), segment=size, density=7830.0)
+    # Halves of a run are kept, so that chords are half as long as they may be, or longer.
+    chord = math.sqrt(8 * radius * 1e-3 * size)
+    at_tip = tool.positions[(tool.positions > -radius).all(axis=1) & (tool.positions[:, 1] < radius)]
+    assert 0.5 * math.pi * radius / chord < len(at_tip) < 2.1 * 0.5 * math.pi * radius / chord + 2
+    assert tool.count - len(at_tip) < 2.1 * perimeter(outline) / size
+    for corner in outline[[0, -2, -1]]:
+        assert (tool.first == corner).all(axis=1).any()
+    assert tool.area == pytest.approx(area(outline), rel=1e-3)
+    assert distance(outline, tool.first, tool.first_facets).max() <= 1e-3 * size
+
+
+@pytest.mark.parametrize("values", [
+    dict(height=0.07, width=0.045, rake=0.0, clearance=3.0, tip_radius=4e-3),
+    dict(height=0.085, width=0.06, rake=25.0, clearance=12.0, tip_radius=5e-3),
+    dict(height=0.15, width=0.15, rake=10.0, clearance=20.0, tip_radius=8e-3),
+    dict(height=0.03, width=0.02, rake=10.0, clearance=10.0, tip_radius=2e-3),
+    dict(height=0.012, width=0.01, rake=-5.0, clearance=5.0, tip_radius=5e-4)])
+def test_the_teeth_of_the_scenes_keep_all_their_vertices(values):
+    shape = tooth(**{**values, **{name: math.radians(values[name]) for name in ("rake", "clearance")}})
+    tool = FacetTool.of_outline(shape, segment=1e-3, density=7830.0)
+    assert (tool.first[:len(shape)] == shape).all()
