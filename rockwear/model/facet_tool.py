@@ -12,8 +12,6 @@ from rockwear.kernels.worn_boundary import WornBoundary
 
 MOST_FACETS = 20_000
 """A tool may have: by then an update of its wear takes seconds."""
-
-
 CUT_OFF = 1e-3
 """Largest distance of a vertex left out from the outline, over the length of a segment."""
 
