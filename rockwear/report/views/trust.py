@@ -12,7 +12,7 @@ from rockwear.report.plots import MM, canvas, save
 
 def trust(run):
     """Section on the acceleration."""
-    if not math.isfinite(run.result("contact_events_per_particle")):
+    if not math.isfinite(run.result("trusted_wear_acceleration")):
         return None
     return Section("How far the acceleration can be trusted", in_words(run), [" ", save(run, "trust", figure(run))])
 
@@ -22,11 +22,14 @@ def in_words(run):
     piece = "a layer as deep as its facet" if "tool_facets" in run.model else "a particle"
     error = run.result("wear_distribution_error")
     known = f"is known to {percent(error, 1.0)}" if math.isfinite(error) else "cannot be told: the run is too short"
+    events = run.result("contact_events_per_particle")
+    # Of a tool that keeps its shape no piece ever goes.
+    goes = f", and {piece} wears away in {number(events)} contact events" if math.isfinite(events) else ""
+    enough = f" and {wear_statistics.ENOUGH_EVENTS} events" if goes else ""
     return (f"Wear is accelerated {quantity(run.parameter('wear_acceleration'), '-')} times. Sampled in "
-            f"{quantity(run.result('simulated_time'), 's')}, its distribution along the tool {known}, and {piece} "
-            f"wears away in {number(run.result('contact_events_per_particle'))} contact events. For an error of "
-            f"{percent(run.parameter('wear_tolerance'), 1.0)} and {wear_statistics.ENOUGH_EVENTS} events, "
-            f"accelerate at most {number(run.result('trusted_wear_acceleration'))} times, and run as much longer.")
+            f"{quantity(run.result('simulated_time'), 's')}, its distribution along the tool {known}{goes}. For an "
+            f"error of {percent(run.parameter('wear_tolerance'), 1.0)}{enough}, accelerate at most "
+            f"{number(run.result('trusted_wear_acceleration'))} times, and run as much longer.")
 
 
 def figure(run):
@@ -58,13 +61,15 @@ def draw_rules(run, axes, factor):
     factors = factor * np.geomspace(1e-3, 10, 60)
     axes.loglog(factors, 100 * run.result("wear_distribution_error") * np.sqrt(factors / factor), color=palette.ERROR,
                 label="error of the distribution / %")
-    axes.loglog(factors, run.result("contact_events_per_particle") * factor / factors, color=palette.EVENTS,
-                label="contact events until a piece is worn away")
     axes.axhline(100 * run.parameter("wear_tolerance"), color=palette.ERROR, linestyle=":",
                  label="largest error wanted")
-    axes.axhline(wear_statistics.ENOUGH_EVENTS, color=palette.EVENTS, linestyle=":", label="fewest events wanted")
+    events = run.result("contact_events_per_particle")
+    if math.isfinite(events):
+        axes.loglog(factors, events * factor / factors, color=palette.EVENTS,
+                    label="contact events until a piece is worn away")
+        axes.axhline(wear_statistics.ENOUGH_EVENTS, color=palette.EVENTS, linestyle=":", label="fewest events wanted")
     axes.axvspan(factors[0], run.result("trusted_wear_acceleration"), color=palette.TRUSTED, zorder=-5,
-                 label="both rules kept")
+                 label="the rules are kept")
     axes.axvline(factor, color=palette.GUIDE, linewidth=1.5, label="this run")
     axes.set(xlabel="wear acceleration, at the same worn volume", xlim=factors[[0, -1]])
     axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), fontsize=8, ncols=2)
