@@ -114,7 +114,7 @@ class HeatModel:
         network = HeatNetwork(capacity=capacity, temperature=temperature, edges=np.empty((0, 2), int), conductance=0.0)
         return Heat(network=network, bonds=bonds, rock_friction=rock_friction, tool_contact=tool_contact, rock=rock,
                     body=body,
-                    heat_fraction=self.fraction, tool_share=self._tool_share(),
+                    heat_fraction=self.fraction, tool_share=self.tool_share(),
                     contact_conductance=self.contact_conductance,
                     convection=self.convection, emissivity=self.emissivity, ambient=self.ambient,
                     rock_paths=rock.paths(self.paths, self.rock.conductivity),
@@ -126,7 +126,8 @@ class HeatModel:
         """(n,) kg: of the Voronoi cells where heat passes their faces, else the particles' own as in the sources."""
         return rock.density * rock.cells.volumes if self.paths == "voronoi" else rock.masses
 
-    def _tool_share(self):
+    def tool_share(self):
+        """Part of the heat of tool-rock friction that the tool takes."""
         if self.sharing == "equal":
             return 0.5
         tool, rock = (effusivity(m.conductivity, m.density, m.specific_heat) for m in (self.tool, self.rock))

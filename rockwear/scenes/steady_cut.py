@@ -18,6 +18,7 @@ from rockwear.kernels.steady_record import (
     CELL, ENOUGH_CHIPS, LONG_ENOUGH, is_known, steady_results, uncertainty, with_error)
 from rockwear.model.rock_mass import SLABS, RockMass
 from rockwear.scenes import parameters, parts
+from rockwear.scenes.by_hand import heated_length, tip_by_hand, worn_by_hand
 from rockwear.scenes.cut import Cut
 from rockwear.scenes.cut_record import CHIPS, GROOVE, CutRecord, table
 from rockwear.scenes.output import crack_table
@@ -29,6 +30,8 @@ LEAST_SPEED = 0.05
 """Part of the cutting velocity with which the ramp of speed begins."""
 SAMPLING_PERIOD = 3
 """Steps between samples of the contacts of a tool of particles."""
+END = 0.1
+"""Part of the way at its end whose mean is the temperature of the tip at the end."""
 BOUNDARIES = "absorbing", "fixed", "free"
 
 
@@ -91,7 +94,7 @@ def make(values):
     record = CutRecord(rock=rock, start=(v.window_behind, path))
     programme = SteadyCut(
         velocity=v.velocity * v.time_scale, cut_length=v.cut_length, ramp_length=v.ramp_length, accuracy=v.accuracy,
-        start=(v.window_behind, path), record=record, chips_leave=v.free_chips == "leave",
+        start=(v.window_behind, path), record=record, chips_leave=v.free_chips == "leave", strip=heated_length(v),
         window=RockWindow(rock=rock, behind=v.window_behind, held_below=v.window_height - 2 * v.depth_of_cut,
                           sides=v.boundary != "free", record=record))
     return Cut(tool=tool, programme=programme, rock=parts.bond(rock, v), time_scale=v.time_scale,
@@ -133,14 +136,17 @@ class SteadyCut(Programme):
 
     velocity: m/s of the mechanics; cut_length, ramp_length: m; accuracy: of the mean cutting force, at which the cut
     ends before, 0: it does not; start: (2,) m, where the tool's origin begins; window: RockWindow; record: CutRecord of
-    what leaves it; chips_leave: whether chips that nothing touches leave at the end of a chunk of steps.
+    what leaves it; chips_leave: whether chips that nothing touches leave at the end of a chunk of steps; strip: m of
+    the tool's outline that friction heats by hand, 0: not known.
     """
 
-    def __init__(self, *, velocity, cut_length, ramp_length, accuracy, start, window, record, chips_leave):
+    def __init__(self, *, velocity, cut_length, ramp_length, accuracy, start, window, record, chips_leave,
+                 strip):
         super().__init__(Straight(start=start, velocity=(velocity, 0.0)), {"stage_names": np.array(["cut"])})
         self.origin = start
         self.velocity, self.cut_length, self.ramp_length = velocity, cut_length, ramp_length
         self.accuracy, self.window, self.record, self.chips_leave = accuracy, window, record, chips_leave
+        self.strip = strip
         self.way, self.speed, self.since = 0.0, 0.0, 0
 
     def stages(self):
@@ -205,7 +211,24 @@ class SteadyCut(Programme):
             length = chip_length(particles=chips[1], area=chips[2], length=chips[3])
             found.update(with_error("chip_length", length, "m"))
             found["peak_cutting_force"] = float(columns["cutting_force"].max()), self.scene.units.force
+            found.update(self._by_hand(columns))
         return {**found, **self.window.results()}
+
+    def _by_hand(self, columns):
+        """scenes.by_hand of the whole record, beside the hottest of the tool at its end."""
+        scene, way, work = self.scene, columns["distance"], float(columns["tool_friction"][-1])
+        worn = worn_by_hand(scene.tool.wear, temperature=scene.first_temperature, distance=way,
+                            thrust=columns["thrust_force"])
+        found = {"worn_volume_by_hand": (worn, scene.units.volume)}
+        if scene.heat_model:
+            end = columns["tool_temperature_max"][way >= (1 - END) * way[-1]]
+            found["tool_temperature_end"] = float(end.mean()), "K"
+            if self.strip and work > 0:
+                names = "tool_temperature_by_hand", "tool_temperature_by_blok"
+                tip = tip_by_hand(scene.heat_model, strip=self.strip, velocity=self.velocity / scene.time_scale,
+                                  distance=float(way[-1]), friction_work=work)
+                found.update((name, (kelvin, "K")) for name, kelvin in zip(names, tip))
+        return found
 
     def warnings(self):
         cracks, columns = self.scene.bonds.cracks, self.scene.recorder.columns()

@@ -119,6 +119,18 @@ def test_numbers_stand_with_their_errors(tmp_path):
     assert "106.3 ± 5.3 kN/m" in text and "2.40 ± 0.27" in text and "too short" not in text
 
 
+def test_wear_and_temperature_stand_beside_those_by_hand(tmp_path):
+    run = make_steady(tmp_path / "run")
+    assert steady.by_hand(run) == ""
+    results = run.summary["results"]
+    results |= {"worn_volume": {"value": 2e-7, "unit": "m3/m"}, "worn_volume_by_hand": {"value": 5e-7, "unit": "m3/m"}}
+    results |= {"tool_temperature_end": {"value": 373.15, "unit": "K"},
+                "tool_temperature_by_blok": {"value": 353.15, "unit": "K"}}
+    shown = steady.by_hand(run)
+    assert "0.2 mm³/mm" in shown and "0.5 mm³/mm" in shown and "100 °C" in shown and "80 °C" in shown
+    assert "strip" not in shown
+
+
 @pytest.mark.parametrize("chips", [2, 6])
 def test_a_short_cut_says_so(tmp_path, chips):
     assert "too short to rely on" in steady.steady_cut(make_steady(tmp_path / "run", chips=chips)).html()

@@ -5,6 +5,7 @@ import signal
 import numpy as np
 import pytest
 
+from rockwear.kernels.archard import MET91
 from tests.running import (
     ROOT, arguments, assert_as_if_never_stopped, assert_density_is_shown, assert_refused, checks_of, history,
     interrupt_script, last_snapshot, refusals, run_script, value)
@@ -62,6 +63,22 @@ def test_the_window_moves_and_the_balance_closes(never):
     if "control_radius" in never.options:
         # Absent particles have no density, reduced radii no less mass.
         assert_density_is_shown(never.out, never.options["control_radius"], 2500.0)
+
+
+def test_wear_and_tip_are_shown_beside_what_is_expected_by_hand(never):
+    record, given = history(never.out), never.summary["parameters"]
+    way, thrust = record["distance [m]"], record["thrust_force [N/m]"]
+    assert value(never, "worn_volume_by_hand") == pytest.approx(
+        given["wear_coefficient"] * given["wear_acceleration"] * np.sum(thrust[1:] * np.diff(way))
+        / MET91(given["tool_temperature"]), rel=1e-6)
+    if not given["heat"]:
+        assert not {name for name in never.summary["results"] if name.startswith("tool_temperature")}
+        return
+    hottest = record["tool_temperature_max [K]"]
+    assert value(never, "tool_temperature_end") == pytest.approx(hottest[way >= 0.9 * way[-1]].mean())
+    # By hand both shares of the heat, of which the common one is the lower, warm the tip.
+    assert given["tool_temperature"] < value(never, "tool_temperature_by_blok") < value(
+        never, "tool_temperature_by_hand")
 
 
 def test_chips_that_nothing_touches_leave_where_they_are_to(never):

@@ -7,7 +7,7 @@ from matplotlib.ticker import LogLocator, NullLocator
 from rockwear.kernels.fragments import LEAST_PARTICLES, size_distribution
 from rockwear.kernels.steady_record import CELL, ENOUGH_CHIPS, LONG_ENOUGH, RESOLUTION, blocks, integral, peaks
 from rockwear.report import palette
-from rockwear.report.page import Section, number, percent, quantity, shown_unit, table, with_error
+from rockwear.report.page import Section, beside, number, percent, quantity, shown_unit, table, with_error
 from rockwear.report.plots import MM, canvas, legend, save
 
 BLOCK = 5 * CELL
@@ -21,6 +21,10 @@ ROWS = {"mean_cutting_force": "mean cutting force", "mean_peak_cutting_force": "
         "thrust_over_cutting": "thrust over cutting force", "specific_energy": "specific energy",
         "friction_work_per_metre": "friction work per metre of cut", "overbreak": "overbreak",
         "chip_length": "chip length"}
+BY_HAND = (("worn off; k N s/H, the thrust sliding all the way", "worn_volume", "worn_volume_by_hand"),
+           ("tip at the end; a strip of heat, the tool's share", "tool_temperature_end", "tool_temperature_by_hand"),
+           ("the same; tool and rock as hot (Blok)", "tool_temperature_end", "tool_temperature_by_blok"))
+"""(label, result of the run, result by hand)."""
 LENGTHS = "overbreak", "chip_length"
 
 
@@ -42,7 +46,8 @@ def steady_cut(run):
     if not is_steady_cut(run):
         return None
     return Section("Steady cut", verdict(run), [
-        measured(run), save(run, "steady_forces", force_figure(run)), save(run, "groove", groove_figure(run)),
+        beside(measured(run), by_hand(run)), save(run, "steady_forces", force_figure(run)),
+        save(run, "groove", groove_figure(run)),
         save(run, "chips_and_cracks", chip_and_crack_figure(run))])
 
 
@@ -69,6 +74,13 @@ def shown(run, name, part=None):
     """A mean with its error in its unit, or times `part` without one."""
     value, error = run.result(name), run.result(f"{name}_standard_error")
     return with_error(value, error, run.unit(name)) if part is None else with_error(part * value, part * error, "-")
+
+
+def by_hand(run):
+    """Table of wear and temperature by hand beside the run's; empty where neither is known."""
+    rows = [(label, *(quantity(run.result(name), run.unit(name)) for name in pair)) for label, *pair in BY_HAND
+            if math.isfinite(run.result(pair[-1]))]
+    return table(rows, ("", "run", "by hand"), "Expected by hand") if rows else ""
 
 
 # ---- forces
