@@ -188,7 +188,7 @@ def signed_distance(points, polygon):
     return nearest(points, check_polygon(polygon))[0]
 
 
-def tooth(*, height, width, rake, clearance, tip_radius, wear_flat=0.0):
+def tooth(*, height, width, rake, clearance, tip_radius, wear_flat=0.0, flat_angle=0.0):
     """Profile of a cutting tooth that moves in +x: vertices (k, 2) in m, counter-clockwise.
 
     The rake face is in front (+x), inclined backwards from the vertical by the rake angle `rake` (rad; negative:
@@ -196,8 +196,9 @@ def tooth(*, height, width, rake, clearance, tip_radius, wear_flat=0.0):
     `clearance` (rad, at least 0). Both are tangent to the tip circle of radius `tip_radius` (m, 0: sharp), which
     touches the lines x = 0 and y = 0: the lowest point of the tooth is at y = 0, x = −tip_radius, and the foremost
     point of the tip at x = 0 unless `rake` is negative. The top is horizontal at y = `height` (m) and `width` (m) long;
-    the back is vertical. A worn tooth has a flat of the length `wear_flat` (m) along y = 0 behind the tip circle, at
-    whose end the clearance face begins.
+    the back is vertical. A worn tooth has a flat of the length `wear_flat` (m) behind the tip circle, at whose end the
+    clearance face begins. It lies along y = 0, or leans by `flat_angle` (rad, at least 0) into the rock, so that its
+    heel is the lowest point, at y = 0, and the tip circle that much higher.
 
     The wedge angle is β = π/2 − rake − clearance. The tangent points are at tip_radius/tan(β/2) from the sharp edge, so
     that rounding removes the area tip_radius² (1/tan(β/2) − (π − β)/2) where there is no flat. The arc is divided into
@@ -209,19 +210,23 @@ def tooth(*, height, width, rake, clearance, tip_radius, wear_flat=0.0):
     height, width = positive("height", height, "m"), positive("width", width, "m")
     rake, clearance = finite("rake", rake, "rad"), not_negative("clearance", clearance, "rad")
     tip_radius, wear_flat = not_negative("tip_radius", tip_radius, "m"), not_negative("wear_flat", wear_flat, "m")
+    flat_angle = not_negative("flat_angle", flat_angle, "rad")
     require(abs(rake) < math.pi / 2, "rake", rake, "between -90 and 90 degrees, both excluded", "rad")
     require(clearance < math.pi / 2, "clearance", clearance, "less than 90 degrees", "rad")
     wedge = math.pi / 2 - rake - clearance
     require(wedge > 0, "rake", rake, f"less than 90 degrees minus the clearance, {90 - math.degrees(clearance):g}",
             "rad")
+    require(flat_angle < math.pi / 2 + rake, "flat_angle", flat_angle,
+            f"less than 90 degrees plus the rake, {90 + math.degrees(rake):g}", "rad")
 
     # directions of the outward normals of the two faces (or of the flat), between which the arc extends
-    first, last = -math.pi / 2 - (0.0 if wear_flat else clearance), rake
+    first, last = -math.pi / 2 + (flat_angle if wear_flat else -clearance), rake
     pieces = max(1, math.ceil((last - first) / (2 * math.acos(1 - ARC_CHORD_ERROR)))) if tip_radius > 0 else 0
     turn = np.linspace(first, last, pieces + 1)
     tip = tip_radius * np.column_stack([np.cos(turn) - 1, np.sin(turn) + 1])
     if wear_flat:
-        tip = np.vstack([tip[0] - [wear_flat, 0.0], tip])
+        tip = np.vstack([tip[0] - wear_flat * np.array([math.cos(flat_angle), math.sin(flat_angle)]), tip])
+        tip[:, 1] -= tip[0, 1]
     (heel_x, heel_y), (front_x, front_y) = tip[0], tip[-1]
     require(front_y < height, "tip_radius", tip_radius, "so small that the rake face begins below the top", "m")
     top_x = front_x - (height - front_y) * math.tan(rake)

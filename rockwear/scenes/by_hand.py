@@ -7,8 +7,8 @@ from rockwear.kernels.steady_record import integral
 
 def heated_length(v):
     """m of the outline that rubs on the rock by hand, from a tooth's parameters: its round tip, which turns from the
-    clearance face to the rake face, and its flat. 0 where the outline is given."""
-    turn = math.pi / 2 + math.radians(v.rake + v.clearance)
+    flat, or the clearance face, to the rake face, and its flat. 0 where the outline is given."""
+    turn = math.pi / 2 + math.radians(v.rake + (-v.flat_angle if v.wear_flat else v.clearance))
     return 0.0 if v.outline else turn * v.tip_radius + v.wear_flat
 
 

@@ -49,7 +49,8 @@ def outline(v):
         return vertices - tip(vertices) - [v.tip_radius, 0.0]
     try:
         vertices = tooth(height=v.tooth_height, width=v.tooth_width, rake=math.radians(v.rake),
-                         clearance=math.radians(v.clearance), tip_radius=v.tip_radius, wear_flat=v.wear_flat)
+                         clearance=math.radians(v.clearance), tip_radius=v.tip_radius, wear_flat=v.wear_flat,
+                         flat_angle=math.radians(v.flat_angle))
     except ParameterError as error:
         # The kernel's words for them, and its radians, are not those of the scene.
         if error.unit == "rad":

@@ -121,6 +121,7 @@ def test_tooth_lies_as_documented():
     ({"clearance": -0.1}, "clearance"), ({"clearance": 1.6}, "clearance"),
     ({"tip_radius": 0.1}, "tip_radius"), ({"clearance": 1.2}, "clearance"),
     ({"width": 0.001, "rake": -0.5}, "width"), ({"wear_flat": -1e-3}, "wear_flat"), ({"wear_flat": 0.04}, "width"),
+    ({"flat_angle": -0.1}, "flat_angle"), ({"flat_angle": 0.5, "rake": -1.2}, "flat_angle"),
 ])
 def test_tooth_errors(change, name):
     with pytest.raises(ParameterError) as error:
@@ -138,6 +139,18 @@ def test_a_wear_flat_is_cut_off_the_clearance_face():
     level = outline.tooth(**{**TOOTH, "clearance": 0.0})
     behind = shape[0, 0] - shape[-1, 0]
     assert outline.area(level) - outline.area(shape) == pytest.approx(0.5 * behind**2 * math.tan(0.15))
+
+
+def test_a_flat_that_leans_into_the_rock_has_its_heel_lowest_and_is_as_long():
+    level, leaning = (outline.tooth(**TOOTH, wear_flat=0.004, flat_angle=angle) for angle in (0.0, 0.1))
+    heel, begin, *_ = leaning
+    assert heel[1] == 0 and leaning[1:, 1].min() == begin[1] == pytest.approx(0.004 * math.sin(0.1))
+    assert begin[0] - heel[0] == pytest.approx(0.004 * math.cos(0.1))
+    # The arc goes on from the flat: the tip circle is the same, and higher.
+    raised = leaning[1:-3] - [0.0, begin[1] - 0.002 * (1 - math.cos(0.1))]
+    assert np.hypot(*(raised - [-0.002, 0.002]).T) == pytest.approx(0.002)
+    assert np.hypot(*(level[1:-3] - [-0.002, 0.002]).T) == pytest.approx(0.002)
+    assert outline.tooth(**TOOTH, flat_angle=0.1).tolist() == outline.tooth(**TOOTH).tolist()
 
 
 def test_thinning_keeps_corners_and_drops_what_lies_between():

@@ -35,10 +35,13 @@ def test_wear_that_is_not_linear_in_the_force_is_not_known_by_hand():
                                    thrust=np.full(11, 30e3)))
 
 
-def test_the_length_that_is_heated_is_the_arc_of_the_tip_and_the_flat():
-    tool = dict(rake=-20.0, clearance=5.0, tip_radius=5e-4, wear_flat=1e-3)
-    assert heated_length(SimpleNamespace(outline="", **tool)) == pytest.approx(math.radians(75) * 5e-4 + 1e-3)
-    assert heated_length(SimpleNamespace(outline="tool.csv", **tool)) == 0
+@pytest.mark.parametrize("change, length", [({}, math.radians(75) * 5e-4),
+                                            ({"wear_flat": 1e-3}, math.radians(70) * 5e-4 + 1e-3),
+                                            ({"wear_flat": 1e-3, "flat_angle": 6.0}, math.radians(64) * 5e-4 + 1e-3),
+                                            ({"outline": "tool.csv"}, 0.0)])
+def test_the_length_that_is_heated_is_the_arc_of_the_tip_and_the_flat(change, length):
+    tool = dict(outline="", rake=-20.0, clearance=5.0, tip_radius=5e-4, wear_flat=0.0, flat_angle=0.0)
+    assert heated_length(SimpleNamespace(**{**tool, **change})) == pytest.approx(length)
 
 
 def test_the_tip_by_hand_takes_its_share_or_what_makes_the_rock_as_hot():

@@ -192,7 +192,8 @@ NO_ROOM = [
     (dict(window_behind=0.005), "window_behind = 0.005 m"), (dict(ramp_length=0.02), "cut_length = 0.02 m"),
     (dict(radius_max=2.1e-3), "radius_max = 0.0021 m"), (dict(tooth_height=0.004), "tooth_height = 0.004 m"),
     (dict(discs_per_depth=2), "discs_per_depth = 2: must be 0 or between 4 and 64"),
-    (dict(rake=-20, wear_flat=8e-3), "tooth_width = 0.01 m")]
+    (dict(rake=-20, wear_flat=8e-3), "tooth_width = 0.01 m"),
+    (dict(rake=-60, wear_flat=1e-3, flat_angle=40), "flat_angle = 40 deg: must be less than 90 degrees plus the rake")]
 
 
 @pytest.fixture(scope="module")
@@ -211,7 +212,7 @@ def test_a_cut_that_has_no_room_is_refused(refused, case):
     # Rock without cohesion flows about the tool; rock that nothing breaks gives way as its springs do.
     (dict(bond_law="cohesive", kt=8e9, bond_tension=1e3, bond_cohesion=1e3, bond_fracture_energy=0.01), "means are of"),
     (dict(Rn=1e12, Rt=1e12), "no bond broke: the tool was pressed into the rock, and cut nothing"),
-    (dict(rake=-20, wear_flat=3e-3, tooth_width=0.02), "means are of")])
+    (dict(rake=-20, wear_flat=3e-3, flat_angle=5, tooth_width=0.02), "means are of")])
 def test_rock_too_weak_or_too_strong_and_a_worn_tool_end_well(values, said, tmp_path):
     run = steady_cut(tmp_path / "out", cut_length=0.006, **values)
     assert run.code == 0 and run.summary["ended"] == "finished", run.stderr
