@@ -7,6 +7,8 @@ LOW = "window 4 depths high"
 """Two thirds of the default."""
 SHARP = "tip 0.2 mm"
 EIGHT_SHARP = f"{EIGHT}, {SHARP}"
+SCRATCH = "scratch"
+"""In grains of a sandstone's size, which break, at the rake of scratches."""
 SEEDS, MORE_SEEDS = (1, 2, 3), (1, 2, 3, 4, 5, 6)
 """Packings of each case, and of those at FLATS_DEPTH."""
 ROCK = dict(rock="crushing_sandstone")
@@ -48,12 +50,16 @@ def depth_case(depth):
 
 
 COARSE = dict(ROCK, discs_per_depth=8, cut_length=LONG)
+REAL_GRAINS = dict(grain_edge=2e-4, grain_strength=3.0, rake=-20.0)
 ROCKS = {
     BASE: ROCK,
     EIGHT: COARSE,
     FOUR: dict(COARSE, discs_per_depth=4),
     FINEST: dict(ROCK, discs_per_depth=32),
     **{depth_case(depth): {**COARSE, **at_depth(depth)} for depth in DEPTHS},
+    SCRATCH: {**COARSE, **at_depth(DEPTHS[0]), **REAL_GRAINS},
+    f"{SCRATCH}, twice as deep": {**COARSE, **at_depth(2 * DEPTHS[0]), **REAL_GRAINS, "discs_per_depth": 16,
+                                  "tip_radius": at_depth(DEPTHS[0])["tip_radius"]},
     **{f"{EIGHT}, {name}": {**COARSE, **change} for name, change in {
         "strengths halved": strengths_times(0.5),
         "strengths times 1.4": strengths_times(1.4),
@@ -74,6 +80,8 @@ HALVED, STRONGER, BENTHEIM, MEDIUM, PADOVA, NO_GRAINS = (f"{EIGHT}, {name}" for 
     "strengths halved", "strengths times 1.4", "bentheim", "medium_sandstone", "p_sandstone", "no grains"))
 THAT_BREAK = tuple(case for case in ROCKS if "times as strong" in case)
 """Larger grains than those of the base, which break."""
+UNTESTED = SCRATCH, f"{SCRATCH}, twice as deep"
+"""Rocks without a laboratory test of their own: a specimen of so many such grains is too large for these speeds."""
 PULLED = BASE, HALVED, STRONGER, BENTHEIM, MEDIUM, PADOVA, *THAT_BREAK
 """Rocks that are pulled in the laboratory, too; the others have the bonds of the base."""
 CHANGES = {
@@ -91,6 +99,7 @@ CHANGES = {
     SHARP: dict(tip_radius=2e-4),
     "wear flat 1 mm": dict(wear_flat=1e-3),
     "wear flat 2 mm": dict(wear_flat=2e-3),
+    "wear flat 2 mm leaning by 5°": dict(HALF, wear_flat=2e-3, flat_angle=5.0),
     "tool friction 0.6": dict(tool_mu=0.6),
     "not damped": dict(background_damping=0.0),
     "damping 5000 1/s": dict(background_damping=5e3),
@@ -105,9 +114,17 @@ CHANGES = {
 }
 """How else the rock of eight discs is cut: a seventh of the cost of sixteen."""
 RAKES = "rake -15°", "rake 15°"
+FLAT = dict(wear_flat=2e-4)
+"""Of a scratch."""
 CUTS = {**{f"{EIGHT}, {name}": change for name, change in CHANGES.items()},
         **{f"{EIGHT_SHARP}, {name}": {**CHANGES[SHARP], **CHANGES[name]} for name in RAKES},
         **{f"{depth_case(FLATS_DEPTH)}, {name}": CHANGES[name] for name in ("wear flat 1 mm", "wear flat 2 mm")},
+        **{f"{SCRATCH}, {name}": change for name, change in {
+            "wear flat 0.2 mm": FLAT,
+            **{f"wear flat 0.2 mm leaning by {angle}°": dict(FLAT, flat_angle=angle) for angle in (2, 5, 10)},
+            "tool friction 0.6": CHANGES["tool friction 0.6"],
+            "tool friction 0.6, wear flat 0.2 mm leaning by 5°": dict(FLAT, flat_angle=5,
+                                                                      **CHANGES["tool friction 0.6"])}.items()},
         **{name: CHANGES[name] for name in ("wear flat 2 mm", "velocity 4 m/s", LOW)}}
 """How else the rock that a case begins with is cut, or that of the base."""
 SETTINGS = BASE, FINEST, LOW, FOUR, EIGHT, *(f"{EIGHT}, {name}" for name in (
@@ -115,7 +132,7 @@ SETTINGS = BASE, FINEST, LOW, FOUR, EIGHT, *(f"{EIGHT}, {name}" for name in (
     "rock not graded", "step 0.45", "step 0.95"))
 """Cases that cut the same rock with the same tool: they differ in what they cost. (A slower one is another cut. A
 window of 5 depths ahead is none: it takes a third of the friction, by which it seems nearer to sixteen discs.)"""
-OF_THE_CUT = {"discs_per_depth", *at_depth(1.0)}
+OF_THE_CUT = {"discs_per_depth", "rake", *at_depth(1.0)}
 """Parameters of a rock of ROCKS that the laboratory does not take."""
 AT_DEPTHS = *map(depth_case, DEPTHS[:2]), EIGHT, depth_case(DEPTHS[2])
 """Cases that differ in size alone, by their depth of cut."""
@@ -161,7 +178,7 @@ def plan(cases):
                              key=lambda job: (job[0] != BASE, job[1], CASES.index(job[0]))):
         rock = rock_of(case)
         found[f"cut/{slug(case, seed)}"] = SCRIPT, cut_of(case, seed)
-        for test in SPEEDS if rock in PULLED else ["compression"]:
+        for test in SPEEDS if rock in PULLED else ["compression"] if rock not in UNTESTED else ():
             found[f"lab/{slug(rock, test, seed)}"] = UNIAXIAL, test_of(rock, test, seed)
     return found
 
@@ -173,8 +190,5 @@ def depth_of(case):
 
 def changed_from(case):
     """The case that this one differs from in one cause; None for those of other discs or depths."""
-    if case.startswith(f"{EIGHT_SHARP}, "):
-        return EIGHT_SHARP
-    if case in CUTS:
-        return rock_of(case)
-    return EIGHT if case.startswith(f"{EIGHT}, ") and depth_of(case) == depth_of(EIGHT) else None
+    known = max((one for one in CASES if case.startswith(f"{one}, ")), key=len, default=BASE if case in CUTS else None)
+    return known if known and depth_of(known) == depth_of(case) else None

@@ -24,11 +24,22 @@ def test_the_plan_changes_one_cause_at_a_time_and_measures_every_rock():
             assert {**base, **cases.CUTS[case]}.items() >= cases.ROCK.items()
         for seed in cases.SEEDS:
             assert f"cut/{cases.slug(case, seed)}" in plan
-            assert f"lab/{cases.slug(cases.rock_of(case), 'compression', seed)}" in plan
+            tested = f"lab/{cases.slug(cases.rock_of(case), 'compression', seed)}" in plan
+            assert tested == (cases.rock_of(case) not in cases.UNTESTED)
     script, values = plan["cut/eight_discs__no_grains-2"]
     changed = {name for name in values if values[name] != cases.cut_of("eight discs", 2).get(name)}
     assert changed == {"grain_edge"}
+    assert "rake" not in cases.test_of(cases.SCRATCH, "compression", 1)
     assert [name.rpartition("-")[0] for name in plan][:9:3] == ["cut/base"] * 3
+
+
+@pytest.mark.parametrize("case, known", [
+    ("base", None), ("eight discs", None), ("eight discs, bentheim", "eight discs"), ("wear flat 2 mm", "base"),
+    ("eight discs, tip 0.2 mm, rake 15°", "eight discs, tip 0.2 mm"), ("scratch, twice as deep", None),
+    ("eight discs, depth 1.2 mm", None), ("eight discs, depth 1.2 mm, wear flat 1 mm", "eight discs, depth 1.2 mm"),
+    ("scratch, tool friction 0.6, wear flat 0.2 mm leaning by 5°", "scratch, tool friction 0.6")])
+def test_a_case_is_compared_with_the_one_that_it_changes(case, known):
+    assert case in cases.CASES and cases.changed_from(case) == known
 
 
 def test_a_few_packings_have_the_errors_of_their_records_and_three_their_scatter():
