@@ -38,6 +38,8 @@ UNITS = {"force": {"N": 1, "kN": 1e3}, "friction": {"N": 1, "kN": 1e3}, "area": 
          "temperature": {"degC": 1, "K": 1}, "hardness": {"HB": BRINELL, "Pa": 1, "MPa": 1e6}}
 SI = {"force": "N", "friction": "N", "area": "m2", "pressure": "Pa", "distance": "m", "depth": "m", "hardness": "Pa"}
 NEEDED = "distance", "depth"
+LINEAR = "pressure", "dissipation"
+"""Laws whose k is Archard's."""
 
 
 def read(file, brinell=BRINELL):
@@ -191,6 +193,9 @@ def lines(found):
             yield f"{steel:6s} the scatter of the tests is 0, and no error is known"
         if np.any(errors > 0) and not np.all(errors > 0):
             yield f"{steel:6s} some tests state no error: equal weights, the error of k is their scatter"
+        if one["law"].name in LINEAR and one["fit"].k[0] > 1:
+            yield (f"{steel:6s} k above 1 is more than what is pressed together can lose: see whether the units of the "
+                   "columns are right")
         if one["fit"].misfit > 4:
             yield (f"{steel:6s} the tests differ by {one['fit'].misfit**0.5:.1f} times their stated errors: "
                    "k is not one number here, or the errors are larger")

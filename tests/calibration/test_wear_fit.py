@@ -119,6 +119,14 @@ def test_command_line_leaves_numbers_and_a_figure(tmp_path, capsys):
     assert (tmp_path / "out/wear_fit.png").stat().st_size > 1e4
 
 
+@pytest.mark.parametrize("unit, said", [("mm", 0), ("m", 1)])
+def test_a_k_above_1_is_said_to_be_one_of_wrong_units(tmp_path, capsys, unit, said):
+    file = tmp_path / "tests.csv"
+    file.write_text(f"pressure [MPa],distance [m],depth [{unit}],hardness [HB]\n50,100,2,450\n", encoding="utf-8")
+    assert main([str(file), "--out", str(tmp_path / "out")]) == 0
+    assert capsys.readouterr().out.count("see whether the units") == said
+
+
 @pytest.mark.parametrize("text, words", [
     ("", "a CSV file with a header"), ("steel,force [lb]\nMET71,1\n", "column force = lb: must be one of N, kN"),
     ("colour [m]\n1\n", "column colour"),
