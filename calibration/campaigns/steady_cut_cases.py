@@ -122,6 +122,7 @@ CUTS = {**{f"{EIGHT}, {name}": change for name, change in CHANGES.items()},
         **{f"{SCRATCH}, {name}": change for name, change in {
             "wear flat 0.2 mm": FLAT,
             **{f"wear flat 0.2 mm leaning by {angle}°": dict(FLAT, flat_angle=angle) for angle in (2, 5, 10)},
+            "velocity 2 m/s": dict(velocity=2.0, snapshot_period=1.25e-4),
             "tool friction 0.6": CHANGES["tool friction 0.6"],
             "tool friction 0.6, wear flat 0.2 mm leaning by 5°": dict(FLAT, flat_angle=5,
                                                                       **CHANGES["tool friction 0.6"])}.items()},
