@@ -11,7 +11,7 @@ from rockwear.kernels.boundary import prism, segments
 from rockwear.report import bodies, instants, pages, plane, plots
 from rockwear.report.folder import RunFolder
 from rockwear.report.views import (
-    density, forces, granular, history, key_results, outlines, speeds, stages, temperature, two_disc)
+    balances, density, forces, granular, history, key_results, outlines, speeds, stages, temperature, two_disc)
 from tests.report.made_up import HEADER, HOT, lattice, make_run
 
 ROOT = Path(__file__).parents[2]
@@ -305,3 +305,10 @@ def test_views_share_no_drawing_but_by_common_modules():
     assert len(files) > 10
     for file in files:
         assert "report.views" not in file.read_text(encoding="utf-8"), file.name
+
+
+def test_what_there_was_at_first_has_no_part_of_what_has_worn(tmp_path):
+    run = RunFolder(make_run(tmp_path / "run"))
+    run.balances["mass"] = {"unit": "kg/m", "initial": 20.0, "archard": 2e-4, "removed": 1e-4}
+    shown = balances.balance_table(run, "mass")
+    assert "50.0 %" in shown and "–" in shown and "1e+07" not in shown and "10000000" not in shown
