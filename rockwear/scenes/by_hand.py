@@ -29,11 +29,13 @@ def tip_by_hand(heat, *, strip, velocity, distance, friction_work):
     kernels.moving_source.still_strip of the tool's share of the heat; and of the share by Blok's rule, with which the
     surfaces of tool and rock are as hot. Both take the tool for a half-space.
     heat: scenes.physics.HeatModel; strip: m, length along the outline; velocity: m/s of the process; distance: m;
-    friction_work: J/m at the tool. Raises ParameterError unless all are above 0.
+    friction_work: J/m at the tool. Raises ParameterError for a strip or a velocity that is not above 0.
     """
     seconds = distance / velocity
     flux = heat.fraction * friction_work / seconds / strip
-    tool, rock = ({"half_length": strip / 2, "flux": flux, "conductivity": m.conductivity, "density": m.density,
+    # The share does not depend on the flux, which heat_fraction = 0 makes 0.
+    tool, rock = ({"half_length": strip / 2, "flux": 1.0, "conductivity": m.conductivity, "density": m.density,
                    "specific_heat": m.specific_heat} for m in (heat.tool, heat.rock))
     still, moving = still_strip(seconds, **tool), moving_strip(velocity, **rock)
-    return tuple(heat.tool_temperature + share * still for share in (heat.tool_share(), common_share(still, moving)))
+    return tuple(heat.tool_temperature + share * flux * still
+                 for share in (heat.tool_share(), common_share(still, moving)))

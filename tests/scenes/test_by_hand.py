@@ -54,3 +54,8 @@ def test_the_tip_by_hand_takes_its_share_or_what_makes_the_rock_as_hot():
     assert share == pytest.approx(0.75 * tool)
     # What of the heat does not warm the tool warms the rock as much.
     assert (1 - common / tool) * rock == pytest.approx(common)
+
+
+def test_friction_that_makes_no_heat_warms_nothing_by_hand():
+    cold = SimpleNamespace(**{**vars(HEAT), "fraction": 0.0})
+    assert tip_by_hand(cold, strip=8e-4, velocity=8.0, distance=0.2, friction_work=600.0) == (300.0, 300.0)
