@@ -9,6 +9,7 @@ SHARP = "tip 0.2 mm"
 EIGHT_SHARP = f"{EIGHT}, {SHARP}"
 SCRATCH = "scratch"
 """In grains of a sandstone's size, which break, at the rake of scratches."""
+DEEPER = f"{SCRATCH}, twice as deep"
 SEEDS, MORE_SEEDS = (1, 2, 3), (1, 2, 3, 4, 5, 6)
 """Packings of each case, and of those at FLATS_DEPTH."""
 ROCK = dict(rock="crushing_sandstone")
@@ -58,8 +59,8 @@ ROCKS = {
     FINEST: dict(ROCK, discs_per_depth=32),
     **{depth_case(depth): {**COARSE, **at_depth(depth)} for depth in DEPTHS},
     SCRATCH: {**COARSE, **at_depth(DEPTHS[0]), **REAL_GRAINS},
-    f"{SCRATCH}, twice as deep": {**COARSE, **at_depth(2 * DEPTHS[0]), **REAL_GRAINS, "discs_per_depth": 16,
-                                  "tip_radius": at_depth(DEPTHS[0])["tip_radius"]},
+    DEEPER: {**COARSE, **at_depth(2 * DEPTHS[0]), **REAL_GRAINS, "discs_per_depth": 16,
+             "tip_radius": at_depth(DEPTHS[0])["tip_radius"]},
     **{f"{EIGHT}, {name}": {**COARSE, **change} for name, change in {
         "strengths halved": strengths_times(0.5),
         "strengths times 1.4": strengths_times(1.4),
@@ -80,7 +81,7 @@ HALVED, STRONGER, BENTHEIM, MEDIUM, PADOVA, NO_GRAINS = (f"{EIGHT}, {name}" for 
     "strengths halved", "strengths times 1.4", "bentheim", "medium_sandstone", "p_sandstone", "no grains"))
 THAT_BREAK = tuple(case for case in ROCKS if "times as strong" in case)
 """Larger grains than those of the base, which break."""
-UNTESTED = SCRATCH, f"{SCRATCH}, twice as deep"
+UNTESTED = SCRATCH, DEEPER
 """Rocks without a laboratory test of their own: a specimen of so many such grains is too large for these speeds."""
 PULLED = BASE, HALVED, STRONGER, BENTHEIM, MEDIUM, PADOVA, *THAT_BREAK
 """Rocks that are pulled in the laboratory, too; the others have the bonds of the base."""
@@ -161,6 +162,13 @@ def cut_of(case, seed):
     return {**CUT, **length, **ROCKS[rock_of(case)], **CUTS.get(case, {}), "seed": seed, "report": "false"}
 
 
+def tests_of(rock):
+    """Names of its laboratory tests."""
+    if rock in UNTESTED:
+        return []
+    return list(SPEEDS) if rock in PULLED else ["compression"]
+
+
 def test_of(rock, test, seed):
     """Parameters of a laboratory test: discs as in the cut, and a specimen that is as much larger as they are."""
     sizes, base = (cut_sizes(case["depth_of_cut"], case["discs_per_depth"], velocity=CUT["velocity"])
@@ -179,7 +187,7 @@ def plan(cases):
                              key=lambda job: (job[0] != BASE, job[1], CASES.index(job[0]))):
         rock = rock_of(case)
         found[f"cut/{slug(case, seed)}"] = SCRIPT, cut_of(case, seed)
-        for test in SPEEDS if rock in PULLED else ["compression"] if rock not in UNTESTED else ():
+        for test in tests_of(rock):
             found[f"lab/{slug(rock, test, seed)}"] = UNIAXIAL, test_of(rock, test, seed)
     return found
 

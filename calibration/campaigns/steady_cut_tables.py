@@ -6,7 +6,7 @@ import numpy as np
 from calibration import generated
 from calibration.campaigns.steady_cut_cases import (
     AT_DEPTHS, BASE, BENTHEIM, CUT, CUTS, DEPTHS, EIGHT, EIGHT_SHARP, FINEST, HALVED, MEDIUM, NO_GRAINS,
-    PADOVA, ROCKS, SETTINGS, STRONGER, changed_from, depth_case, depth_of, rock_of)
+    PADOVA, ROCKS, SETTINGS, STRONGER, changed_from, cut_of, depth_case, depth_of, rock_of)
 from calibration.campaigns.steady_cut_numbers import COLUMNS, difference, force_over, scaled, shown
 from rockwear.kernels import cutting_theory
 from rockwear.kernels.checks import ParameterError
@@ -192,7 +192,7 @@ def theories(found):
         if not (other_theory and _tested(row)):
             continue
         tension = 1e6 * row["tensile_strength"].value
-        rake, depth = math.radians({**CUT, **CUTS.get(case, {})}["rake"]), depth_of(case)
+        rake, depth = math.radians(cut_of(case, seed=1)["rake"]), depth_of(case)
         cohesion, angle = cutting_theory.mohr_coulomb(compressive_strength=1e6 * row["ucs"].value,
                                                       tensile_strength=tension)
         evans = cutting_theory.evans(tensile_strength=tension, depth=depth, rake=rake)
