@@ -228,7 +228,9 @@ def tooth(*, height, width, rake, clearance, tip_radius, wear_flat=0.0, flat_ang
         tip = np.vstack([tip[0] - wear_flat * np.array([math.cos(flat_angle), math.sin(flat_angle)]), tip])
         tip[:, 1] -= tip[0, 1]
     (heel_x, heel_y), (front_x, front_y) = tip[0], tip[-1]
-    require(front_y < height, "tip_radius", tip_radius, "so small that the rake face begins below the top", "m")
+    # A long flat that leans lifts what is before it.
+    lifts = ("wear_flat", wear_flat) if wear_flat * math.sin(flat_angle) > tip_radius else ("tip_radius", tip_radius)
+    require(front_y < height, *lifts, "so small that the rake face begins below the top", "m")
     top_x = front_x - (height - front_y) * math.tan(rake)
     back_x = top_x - width
     require(back_x < heel_x, "width", width, f"greater than {top_x - heel_x:g}: the back must lie behind the tip", "m")

@@ -11,21 +11,28 @@ from rockwear.kernels.polygon import contour, nearest_arc
 
 MIN_BLOCKS = 8
 """Least number of blocks of a record from which its scatter is estimated."""
-PLACE = 2e-3
-"""Length (m) along the profile of a tool over which wear is summed."""
+PLACE, PLACES = 2e-3, 20
+"""Length (m) along the profile of a tool over which wear is summed; places that a small tool has at least."""
 ENOUGH_EVENTS = 10
 """Least number of contact events in which a particle should be worn away: no single event determines the shape."""
 
 
+def place_length(outline):
+    """m, length of a place of a profile (k, 2) m: PLACE, or a part of the profile where it has few of these."""
+    return min(PLACE, float(np.linalg.norm(outline - np.roll(outline, 1, axis=0), axis=1).sum()) / PLACES)
+
+
 def places(outline, points):
-    """(m,) int, number of the place, PLACE long, of a profile (k, 2) m nearest to each of the points (m, 2) m."""
-    along, arc = contour(outline, PLACE / 10)
-    return np.floor((nearest_arc(points, along, arc) - arc[0]) / PLACE).astype(int)
+    """(m,) int, number of the place of a profile (k, 2) m nearest to each of the points (m, 2) m."""
+    length = place_length(outline)
+    along, arc = contour(outline, length / 10)
+    return np.floor((nearest_arc(points, along, arc) - arc[0]) / length).astype(int)
 
 
 def middles(outline, count):
     """(count,) m, arc length from the tip of a profile (k, 2) m to the middles of its places."""
-    return contour(outline, PLACE / 10)[1][0] + (np.arange(count) + 0.5) * PLACE
+    length = place_length(outline)
+    return contour(outline, length / 10)[1][0] + (np.arange(count) + 0.5) * length
 
 
 def distribution_error(increments):

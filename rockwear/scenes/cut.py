@@ -71,6 +71,8 @@ class Cut(Scene):
         self.time_step = chosen_step(accuracy, self.critical_step)
         self._plan(programme.stages())
         programme.planned()
+        if programme.window:
+            self.chunk = min(self.chunk, programme.window.most_steps(programme.fastest() * self.time_step))
         self.energy = StoredEnergy(self.stored_energy)
         self.output = CutOutput(self)
 

@@ -93,7 +93,7 @@ OUTLINE = (
               "ours"),
     Parameter("wear_flat", 0.0, "m", length_or_zero, "length of a worn flat behind the tip", "ours", PARAMETRIC),
     Parameter("flat_angle", 0.0, "deg", number(0, 45), "by which the flat leans into the rock, its heel lowest; 0: "
-              "along the motion", "calibration/results/steady_cut.md", PARAMETRIC),
+              "along the motion", "calibration/results/steady_cut.md", {**PARAMETRIC, "wear_flat": Above(0)}),
     Parameter("outline", "", "", file, "CSV file of x, y in m: a tooth of your own in place of the seven above"))
 SHAPE = (
     Parameter("work_fraction", 1.0, "", number(0, 1), "part of the friction work that wears a tool of facets",

@@ -73,29 +73,30 @@ def check_height(v, vertices, name, depth):
     check_extent(v, "tooth_height", height, height > depth, f"more than {name} = {depth:g} m")
 
 
-def hardness(v):
-    """Hardness of the tool: constant, the table's at one temperature, or the table."""
+def hardness(v, wears=True):
+    """Hardness of the tool: constant, the table's at one temperature, or the table, which the first temperatures must
+    then be in. wears: whether anything asks for it."""
     if v.hardness > 0:
         return Hardness.constant(v.hardness)
     table = HARDNESS[v.hardness_table]
     low, high = table.limits
-    used = ("tool_temperature", "rock_temperature", "ambient_temperature",
-            "shank_temperature") if v.heat else ("tool_temperature",)
-    for name in used:
-        value = getattr(v, name)
-        require(low <= value <= high, name, value,
-                f"inside the hardness table of {v.hardness_table}, {low:g} to {high:g}", "K")
     if v.hardness_temperature != -1:
         require(low <= v.hardness_temperature <= high, "hardness_temperature", v.hardness_temperature,
                 f"inside the hardness table of {v.hardness_table}, {low:g} to {high:g}, or -1 for the tool's own", "K")
         return Hardness.constant(table(v.hardness_temperature))
+    used = ("tool_temperature", "rock_temperature", "ambient_temperature",
+            "shank_temperature") if v.heat else ("tool_temperature",)
+    for name in used if wears else ():
+        value = getattr(v, name)
+        require(low <= value <= high, name, value,
+                f"inside the hardness table of {v.hardness_table}, {low:g} to {high:g}", "K")
     return Hardness(table.kelvin - KELVIN, table.pascal / BRINELL)
 
 
 def tool_wear(v):
     """scenes.physics.ToolWear."""
-    law = WEAR_LAWS[v.wear_law].from_values(vars(v), mu=v.tool_mu)
-    return ToolWear(law=law.scaled(v.wear_acceleration), hardness=hardness(v), acceleration=v.wear_acceleration,
+    law = WEAR_LAWS[v.wear_law].from_values(vars(v), mu=v.tool_mu).scaled(v.wear_acceleration)
+    return ToolWear(law=law, hardness=hardness(v, law.wears), acceleration=v.wear_acceleration,
                     removal=v.removal if v.tool == "particles" else "volume", tolerance=v.wear_tolerance)
 
 

@@ -67,6 +67,10 @@ class RockWindow:
         """m that a tool whose tip is at `place` (2,) m has gone."""
         return float(self.rock.strip.unroll(np.array([place]))[0, 0]) - self.behind
 
+    def most_steps(self, way):
+        """Steps, of `way` (m) each, in which the tool goes no further than the window may be late."""
+        return max(1, int(MOST_LATE * self.rock.slab_length / way))
+
     def follow(self, distance):
         """Bring the window along to where the tool has gone so far (m).
 

@@ -183,8 +183,10 @@ class SteadyCut(Programme):
         """Whether the mean force is known well enough; asked once in so many depths of cut. before: m, the way when it
         was asked last."""
         asked = CELL * self.scene.depth_of_cut
-        return self.accuracy > 0 and self.way // asked > before // asked and (
-            is_known(self.accuracy, **self._forces(self.scene.recorder.columns())))
+        if not (self.accuracy > 0 and self.way // asked > before // asked):
+            return False
+        columns = self.scene.recorder.columns()
+        return bool(columns) and is_known(self.accuracy, **self._forces(columns))
 
     def _forces(self, columns):
         """What steady_results takes."""
@@ -217,8 +219,8 @@ class SteadyCut(Programme):
     def _by_hand(self, columns):
         """scenes.by_hand of the whole record, beside the hottest of the tool at its end."""
         scene, way, work = self.scene, columns["distance"], float(columns["tool_friction"][-1])
-        worn = worn_by_hand(scene.tool.wear, temperature=scene.first_temperature, distance=way,
-                            thrust=columns["thrust_force"])
+        worn = scene.tool.work_fraction * worn_by_hand(
+            scene.tool.wear, temperature=scene.first_temperature, distance=way, thrust=columns["thrust_force"])
         found = {"worn_volume_by_hand": (worn, scene.units.volume)}
         if scene.heat_model:
             end = columns["tool_temperature_max"][way >= (1 - END) * way[-1]]

@@ -38,6 +38,8 @@ class ToolAssembly(ABC):
     """What of the tool wears away in one."""
     loose_material = FrictMat
     """YADE's material of rock that is no longer bonded."""
+    work_fraction = 1.0
+    """Part of the friction work that wears the tool."""
     put_loop = staticmethod(yade_scene.put_loop)
 
     def __init__(self, *, model, outline, contact_law, wear, units, sampling_period=1):

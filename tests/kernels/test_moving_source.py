@@ -8,7 +8,7 @@ from scipy.special import exp1, k0
 
 from rockwear.kernels.analytic import half_space_under_flux
 from rockwear.kernels.checks import ParameterError
-from rockwear.kernels.moving_source import common_share, moving_strip, still_strip
+from rockwear.kernels.moving_source import FAST, common_share, moving_strip, still_strip
 
 STEEL = dict(conductivity=60.0, density=7830.0, specific_heat=450.0)
 A = 60.0 / (7830 * 450)
@@ -49,6 +49,13 @@ def test_a_moving_strip_is_the_hottest_sum_of_its_lines(velocity):
 def test_a_fast_strip_heats_a_half_space_while_it_passes():
     passing = half_space_under_flux(0.0, 8e-4 / 100, flux=1.6e7, **STEEL)
     assert moving_strip(100.0, **STRIP, **STEEL) == pytest.approx(float(passing), rel=1e-3)
+
+
+@pytest.mark.parametrize("peclet", (0.9 * FAST, 1.1 * FAST, 1e20))
+def test_however_fast_a_strip_is_its_rise_is_known(peclet):
+    velocity = peclet * A / STRIP["half_length"]
+    passing = half_space_under_flux(0.0, 2 * STRIP["half_length"] / velocity, flux=1.6e7, **STEEL)
+    assert moving_strip(velocity, **STRIP, **STEEL) == pytest.approx(float(passing), rel=1e-5)
 
 
 def test_the_common_share_makes_both_as_hot():

@@ -121,6 +121,7 @@ def test_tooth_lies_as_documented():
     ({"clearance": -0.1}, "clearance"), ({"clearance": 1.6}, "clearance"),
     ({"tip_radius": 0.1}, "tip_radius"), ({"clearance": 1.2}, "clearance"),
     ({"width": 0.001, "rake": -0.5}, "width"), ({"wear_flat": -1e-3}, "wear_flat"), ({"wear_flat": 0.04}, "width"),
+    ({"wear_flat": 0.12, "flat_angle": 0.5}, "wear_flat"),
     ({"flat_angle": -0.1}, "flat_angle"), ({"flat_angle": 0.5, "rake": -1.2}, "flat_angle"),
 ])
 def test_tooth_errors(change, name):

@@ -3,7 +3,8 @@ import numpy as np
 import pytest
 
 from rockwear.kernels.wear_statistics import (
-    MIN_BLOCKS, difference, distribution_error, events_per_particle, trusted_wear_acceleration)
+    MIN_BLOCKS, PLACE, PLACES, difference, distribution_error, events_per_particle, middles, place_length, places,
+    trusted_wear_acceleration)
 
 
 def record(generator, spans, burst=1, places=8):
@@ -40,6 +41,19 @@ def test_too_short_or_no_wear_says_nothing():
     assert np.isnan(distribution_error(np.ones((MIN_BLOCKS - 1, 3))))
     assert np.isnan(distribution_error(np.zeros((20, 3))))
     assert np.isnan(events_per_particle(events=np.zeros(3), worn=np.zeros(3), limit=np.ones(3)))
+
+
+@pytest.mark.parametrize("side", [0.05, 4e-4])
+def test_a_tool_has_places_enough_whatever_its_size(side):
+    square = side * np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+    length = place_length(square)
+    assert length == (PLACE if side == 0.05 else pytest.approx(4 * side / PLACES))
+    along = np.linspace(0, 1, 401)[1:-1] * side
+    found = places(square, np.column_stack([along, np.zeros(399)]))
+    assert len(set(found.tolist())) == pytest.approx(side / length, abs=1)
+    # A point lies within half a place of the middle of its own; the lower side is the front or behind the tip.
+    arc = middles(square, found.max() + 1)[found]
+    assert abs(abs(arc) - along).max() < 0.6 * length or abs(abs(arc) - along[::-1]).max() < 0.6 * length
 
 
 def test_events_count_by_worn_volume():

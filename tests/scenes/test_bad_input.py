@@ -236,6 +236,13 @@ def test_a_checkpoint_belongs_to_the_contents_of_its_files(tmp_path):
     assert_refused(run.code, run.stderr, "of the same files: outline is ")
 
 
+@pytest.mark.parametrize("values", [{"hardness_temperature": 293.15, "rock_temperature": 268.15},
+                                    {"wear_acceleration": 0, "ambient_temperature": 263.15}])
+def test_frozen_rock_is_cut_where_nothing_asks_for_the_steel_s_hardness_there(values, tmp_path):
+    run = run_script(SCRIPT, *words_of({"start_up": 1e-5, "cycles": 0, "report": "false", **values}, tmp_path / "out"))
+    assert run.code == 0, run.stderr
+
+
 def test_help_lists_every_parameter_with_its_source():
     run = run_script(SCRIPT, "--help")
     assert run.code == 0

@@ -48,12 +48,14 @@ def figure(run):
 
 def draw_profile(run, axes, worn, deviation):
     """Share of the worn volume by place along the outline, with its standard error."""
-    place = MM * wear_statistics.middles(run.model["outline"], len(worn))
-    axes.bar(place, 100 * worn / worn.sum(), 0.9 * MM * wear_statistics.PLACE, color=palette.BAR,
+    outline = run.model["outline"]
+    place, length = MM * wear_statistics.middles(outline, len(worn)), MM * wear_statistics.place_length(outline)
+    axes.bar(place, 100 * worn / worn.sum(), 0.9 * length, color=palette.BAR,
              yerr=100 * deviation / worn.sum(), ecolor=palette.BAR_ERROR)
     shown = place[worn > 1e-3 * worn.max()]
     axes.set(xlabel="arc length from the tip along the new outline / mm", ylabel="% of the worn volume", ylim=(0, None),
-             xlim=(shown.min() - 4, shown.max() + 4), title="where the tool wears, and how well that is known")
+             xlim=(shown.min() - 2 * length, shown.max() + 2 * length),
+             title="where the tool wears, and how well that is known")
 
 
 def draw_rules(run, axes, factor):
