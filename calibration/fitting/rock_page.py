@@ -15,6 +15,7 @@ from rockwear.scenes.parameters import OF_ROCK
 ENVELOPE = "envelope.png"
 """Figure of strengths over confinement."""
 SCALES = {"Pa": (1e6, "MPa"), "Pa sqrt(m)": (1e6, "MPa sqrt(m)"), "": (1, "")}
+STRENGTHS = "ucs", "tensile_strength"
 NEAR = 0.05
 """Difference of UCS over tensile strength from what was asked for, over it, that is not for want of other grains."""
 
@@ -78,9 +79,9 @@ def answer(found, micro):
 
 def _grains_needed(found, micro, missed):
     """Lines on grains of another size, where UCS over tensile strength is what was missed."""
-    over = {o.name: one.mean / o.target for o, one in found.verdicts.items()}
+    over = {o.name: one.mean / o.target for o, one in found.verdicts.items() if o.name in STRENGTHS}
     ratio = over["ucs"] / over["tensile_strength"]
-    if not {o.name for o in missed} & {"ucs", "tensile_strength"} or not abs(ratio - 1) >= NEAR:
+    if not {o.name for o in missed} & set(STRENGTHS) or not abs(ratio - 1) >= NEAR:
         return []
     return [f"UCS over tensile strength is {ratio:.2f} of what was asked for. It rises with the grain_edge, which is "
             f"{micro.given.get('grain_edge', 0.0):g} m here: a {'longer' if ratio < 1 else 'shorter'} one may come "
@@ -189,9 +190,9 @@ def radii(values):
 
 
 def figure(found, micro):
-    """Measured over target, step by step, and each packing of the last check."""
+    """Measured over target, step by step, and each packing of the last check. A Poisson's ratio of 0 is left out."""
     drawn, (axes,) = plots.canvas(7.5, 4.5)
-    for number, o in enumerate(micro.observables):
+    for number, o in enumerate(one for one in micro.observables if one.target):
         colour = f"C{number}"
         axes.plot([np.nanmean(step.values[o]) / o.target for step in found.steps], "o-", color=colour, label=o.name,
                   markersize=4)

@@ -134,6 +134,16 @@ def test_a_strength_that_the_law_cannot_reach_is_said_and_the_others_are_met(tmp
     assert any("a longer one may come nearer" in line for line in rock_page.answer(found, micro))
 
 
+@pytest.mark.filterwarnings("error::RuntimeWarning")
+def test_a_poissons_ratio_of_0_is_a_target_as_any_other(tmp_path):
+    targets = replace(SANDSTONE, poissons_ratio=0.0)
+    micro, found, _ = fitted(targets, scatter=0.005, limit=6.0)
+    assert any("a longer one may come nearer" in line for line in rock_page.answer(found, micro))
+    rock_page.write(tmp_path, found, micro=micro, targets=targets, values=VALUES)
+    assert "| poissons_ratio | 0 |" in (tmp_path / "fit.md").read_text(encoding="utf-8")
+    assert rock_file.read(tmp_path / "rock.json", OF_ROCK).targets["poissons_ratio"] == 0
+
+
 def test_a_rock_less_tough_than_its_discs_is_told_to_take_smaller_ones():
     brittle = replace(TOUGH, fracture_toughness=0.3e6, points=())
     micro, found, _ = fitted(brittle, "cohesive", scatter=0.005)
