@@ -56,11 +56,13 @@ def choose(rows, *, accuracy, quantities):
     return row, depths, off, of_length
 
 
-def shown(row, depths, off, of_length, depth):
-    """Lines: the command, and what is to be expected of it."""
+def shown(row, depths, off, of_length, *, depth, quantities):
+    """Lines: the command, and what is to be expected of it. depth: m, of the cut; quantities: names out of QUANTITIES.
+    """
     values = {"depth_of_cut": depth, "tip_radius": TIP * depth, **row["options"],
               **{name: part * depth for name, part in row["lengths"].items()},
-              "accuracy": round(of_length, 3), "cut_length": LONGEST * depths * depth}
+              "accuracy": round(of_length, 3), "cut_length": LONGEST * depths * depth,
+              **({"heat": "true"} if "temperature" in quantities else {})}
     words = " ".join(f"--{name} {value:.6g}" if isinstance(value, (int, float)) else f"--{name} {value}"
                      for name, value in values.items())
     return [f"yade -n -x -j1 yade_scripts/steady_cut.py {words}",
@@ -79,7 +81,8 @@ def main(words):
         unknown = [name for name in quantities if name not in QUANTITIES]
         require(not unknown, "of", v["of"], f"names out of {', '.join(QUANTITIES)}, with commas")
         rows = json.loads(MEASURED.read_text(encoding="utf-8"))
-        print("\n".join(shown(*choose(rows, accuracy=v["accuracy"], quantities=quantities), v["depth_of_cut"])))
+        print("\n".join(shown(*choose(rows, accuracy=v["accuracy"], quantities=quantities), depth=v["depth_of_cut"],
+                              quantities=quantities)))
     except ParameterError as error:
         print(f"error: {error}", file=sys.stderr)
         return 2

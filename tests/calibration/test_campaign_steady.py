@@ -326,7 +326,7 @@ def test_an_accuracy_that_no_setting_has_is_refused():
 
 def test_the_command_of_a_setting_has_its_lengths_over_the_depth():
     row = tables.settings(SETTINGS)[2]
-    command, words = settings.shown(row, 40, 0.1, 0.2, 2e-3)
+    command, words = settings.shown(row, 40, 0.1, 0.2, depth=2e-3, quantities=settings.QUANTITIES[:2])
     assert command.endswith("--depth_of_cut 0.002 --tip_radius 0.0002 --discs_per_depth 8 --velocity 8 "
                             "--time_step_fraction 0.9 --window_height 0.016 --accuracy 0.2 --cut_length 0.16")
     assert ("off by 10 % beside sixteen discs at the same speed, by 20 % for its length, some 40 depths of cut; "
@@ -343,6 +343,8 @@ def test_settings_on_the_command_line(words, said, tmp_path, monkeypatch, capsys
     assert settings.main(words) == (2 if said else 0)
     out, error = capsys.readouterr()
     assert error.startswith(f"error: {said}") and error.count("\n") == 1 if said else "steady_cut.py" in out
+    # A cut computes temperatures only where it is told to.
+    assert ("--heat true" in out) == ("temperature" in words)
 
 
 def test_the_settings_that_come_with_the_package_can_be_chosen_from():
