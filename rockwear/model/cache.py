@@ -4,7 +4,9 @@ import json
 import numpy as np
 import os
 
+from contextlib import suppress
 from pathlib import Path
+from zipfile import BadZipFile
 
 
 CACHE_VERSION = 2
@@ -26,7 +28,7 @@ def cached(make, **key):
     try:
         with np.load(file) as stored:
             return dict(stored)
-    except (OSError, ValueError, KeyError, EOFError):
+    except (OSError, ValueError, KeyError, EOFError, BadZipFile):
         pass
     arrays = make()
     temporary = file.with_suffix(f".{os.getpid()}.npz")
@@ -35,5 +37,7 @@ def cached(make, **key):
         np.savez(temporary, **arrays)
         os.replace(temporary, file)
     except OSError:
-        temporary.unlink(missing_ok=True)
+        # Where the folder cannot be made, nor can a file in it be looked for.
+        with suppress(OSError):
+            temporary.unlink()
     return arrays

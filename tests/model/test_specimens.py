@@ -7,6 +7,7 @@ import pytest
 
 from rockwear.model import rock
 from rockwear.model import particle_tool as tool
+from rockwear.model.cache import cached
 from rockwear.kernels.checks import ParameterError
 from rockwear.kernels.conduction import effective_conductivity
 from rockwear.kernels.polygon import area, tooth
@@ -86,8 +87,20 @@ def test_the_cache_gives_back_the_same_packing(tmp_path, monkeypatch):
     small = {**SPECIMEN, "width": 0.03, "height": 0.03}
     first, again = (rock.Specimen(seed=7, **small) for _ in range(2))
     assert np.array_equal(first.positions, again.positions) and len(list(tmp_path.glob("*.npz"))) == 1
-    next(tmp_path.glob("*.npz")).write_bytes(b"cut short")
-    assert np.array_equal(rock.Specimen(seed=7, **small).positions, first.positions)
+    kept = next(tmp_path.glob("*.npz"))
+    whole = kept.read_bytes()
+    for spoilt in (b"cut short", b"", whole[:1000], whole[:300] + bytes(300) + whole[600:]):
+        kept.write_bytes(spoilt)
+        assert np.array_equal(rock.Specimen(seed=7, **small).positions, first.positions)
+        assert kept.read_bytes() == whole
+
+
+@pytest.mark.parametrize("folder", ["file", "file/below"])
+def test_a_cache_folder_that_cannot_be_made_is_passed_over(folder, tmp_path, monkeypatch):
+    (tmp_path / "file").touch()
+    monkeypatch.setenv("ROCKWEAR_CACHE", str(tmp_path / folder))
+    assert cached(lambda: {"radii": np.ones(2)}, seed=1)["radii"].tolist() == [1.0, 1.0]
+    assert [one.name for one in tmp_path.iterdir()] == ["file"]
 
 
 TOOL_PACKING = dict(radius_min=0.4e-3, radius_max=0.52e-3, seed=1)
