@@ -15,7 +15,9 @@ DIRECTIONS = {"vertical": (0.0, 1.0, 0.0), "along": (1.0, 0.0, 0.0), "across": (
 LOOSE = 0.5
 """Part of the box that grains fill before they settle, for the height of its walls."""
 VISITS = 100
-"""Values of the acceleration in a period of the vibration."""
+"""Values of the acceleration in a period of the vibration, where the time step is short enough."""
+LEAST_VISITS = 20
+"""Of them at least: with fewer the box does not vibrate as it is told to."""
 
 GROUPS = with_defaults([
     GRAINS,
@@ -79,6 +81,9 @@ class VibratedTube(Granular):
         self.output = TubeOutput(self)
         super().__init__(values, grains=grains, walls=self.box.walls,
                          stages={"settling": v.settling, "vibration": v.vibrating})
+        fastest = 1 / (LEAST_VISITS * self.time_step)
+        require(v.amplitude == 0 or v.frequency <= fastest, "frequency", v.frequency, f"at most {fastest:.3g}, so that "
+                f"a period has {LEAST_VISITS} time steps of {self.time_step:.3g} s", "Hz")
 
     def own_engines(self):
         v = self.v
