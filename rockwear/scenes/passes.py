@@ -43,7 +43,9 @@ def make(values):
     parts.check_radii(v)
     cutting.check_cut(v, v.start_up + v.cycle_time)
     velocities = listed(v.velocities)
-    require(len(set(velocities)) == len(velocities), "velocities", v.velocities, "each given once", "m/s")
+    # They name stages, results and tables, in six digits.
+    require(len({f"{u:g}" for u in velocities}) == len(velocities), "velocities", v.velocities,
+            "each given once, different in six digits", "m/s")
     require(v.wear_passes == 0 or v.wear_velocity in velocities, "wear_velocity", v.wear_velocity,
             f"one of velocities = {v.velocities}", "m/s")
     require(v.conduction, "conduction", "false", "true: without it no temperature is quasi-stationary")

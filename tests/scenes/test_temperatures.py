@@ -104,6 +104,7 @@ def test_bad_input_ends_in_one_line(tmp_path):
     cases = [({"velocities": "4,fast"}, "velocities = fast"),
              ({"velocities": "4,0"}, "velocities = 0 m/s: must be greater than 0"),
              ({"velocities": "4,0.4,4.0"}, "velocities = 4,0.4,4 m/s: must be each given once"),
+             ({"velocities": "0.4000001,0.4"}, "velocities = 0.4000001,0.4 m/s: must be each given once, different in"),
              ({"conduction": "false"}, "conduction = false: must be true"),
              ({"convection": 0, "emissivity": 0, "contact_conductance": 0}, "convection = 0 W/m2K: must be greater "
               "than 0 where emissivity and contact_conductance are 0"),
