@@ -86,16 +86,21 @@ def _leave(code):
 
 
 def _check_steps(scene, values, declared):
-    """Raise ParameterError where the scene has too many steps. It names what differs most from its default."""
+    """Raise ParameterError where the scene has too many steps. It names a time step that is given, and what differs
+    most from its default."""
     steps = float(sum(steps for _, steps in scene.stages))
-    factors = {}
+    if steps <= MOST_STEPS:
+        return
+    factors, defaults = {}, parameters.defaults(declared, values)
     for name, parameter in parameters.flat(declared).items():
-        value, default = values[name], parameter.default
+        value, default = values[name], defaults[name]
         if parameter.unit in DECISIVE_UNITS and isinstance(default, float) and value * default > 0:
             factors[f"{name} = {value:g} {parameter.unit}"] = abs(math.log(value / default))
+    if values.get("time_step"):
+        factors[f"time_step = {values['time_step']:g} s"] = math.inf
     causes = [cause for cause in sorted(factors, key=factors.get, reverse=True)[:3] if factors[cause] > 1]
-    require(steps <= MOST_STEPS, "steps", steps, f"at most {MOST_STEPS:g} of {scene.time_step:g} s in all: change "
-            + (" or ".join(causes) or "the times of the scene"))
+    raise ParameterError("steps", steps, f"at most {MOST_STEPS:g} of {scene.time_step:g} s in all: change "
+                         + (" or ".join(causes) or "the times of the scene"))
 
 
 def _files(values, declared):

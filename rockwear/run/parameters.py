@@ -65,6 +65,16 @@ def _with_presets(known, given):
     return known
 
 
+def defaults(groups, values):
+    """{name: default} of all parameters; what presets give goes before what is declared. values: all, as of `read`."""
+    known = flat(groups)
+    found = {name: parameter.default for name, parameter in known.items()}
+    for name, parameter in known.items():
+        if parameter.presets and values[name]:
+            found.update(parameter.presets.defaults(values[name], values))
+    return found
+
+
 def _advice(name, known):
     """The rule that an unknown name breaks."""
     renamed = [new for new in RENAMED.get(name, ()) if new in known]

@@ -32,7 +32,10 @@ def test_a_batch_keeps_the_servers_that_its_overview_asks(tmp_path):
 @pytest.mark.parametrize("words, named", [
     (["--k", "1e29"], "change k = 1e+29 N/m"),
     (["--density", "1e-30", "--width", "1.5"], "change density = 1e-30 kg/m3"),
-    (["--time", "1e8", "--k=1e15"], "change k = 1e+15 N/m or time = 1e+08 s")])
+    (["--time", "1e8", "--k=1e15"], "change k = 1e+15 N/m or time = 1e+08 s"),
+    (["--time", "1e8", "--stiff"], "change time = 1e+08 s"),
+    (["--stiff", "--k", "1e29"], "change k = 1e+29 N/m"),
+    (["--time_step", "1e-15", "--k", "1e8"], "change time_step = 1e-15 s or k = 1e+08 N/m")])
 def test_too_many_steps_name_what_makes_them(words, named, tmp_path):
     error = error_of(run_script(SCRIPTS / "steps.py", *words, cwd=tmp_path))
     assert error.startswith("error: steps = ") and error.endswith(named)
