@@ -23,6 +23,8 @@ from rockwear.scenes.turns import Turns
 
 WIDEST_WINDOW = 2.0
 """rad about the axis of rotation: a longer one comes too near to a full turn."""
+LAST_ANGLE = 170.0
+"""deg from the lowest point of the path, before which cut and rock end: at 180 the chip has no thickness."""
 STRENGTHS = {p.name: p.size_power[0] for p in law_parameters(BOND_LAWS, "bond_law") if p.size_power[0]}
 SCALED = {"radius_min": 1, "radius_max": 1, **STRENGTHS}
 """Powers of scale_factor with which parameters grow: the macroscopic strength stays."""
@@ -124,8 +126,8 @@ def check_cut(v, turn_time):
             f"so that the pick turns faster than it moves with swing = {v.swing:g} m/s", "rad/s")
     require(v.cut_time < turn_time, "cut_time", v.cut_time, f"less than a turn, {turn_time:g}", "s")
     last = v.entry_angle + math.degrees(v.angular_velocity * v.cut_time)
-    require(last < 170, "cut_time", v.cut_time,
-            f"so short that the cut, from {v.entry_angle:g} degrees on, ends before 170 degrees", "s")
+    require(last < LAST_ANGLE, "cut_time", v.cut_time,
+            f"so short that the cut, from {v.entry_angle:g} degrees on, ends before {LAST_ANGLE:g} degrees", "s")
     require(tip_speed * v.cut_time > 2 * v.radius_max, "cut_time", v.cut_time, "so long that the cut, "
             f"{tip_speed * v.cut_time:.3g} m, is longer than a rock particle, {2 * v.radius_max:g}", "s")
     thinnest = v.feed * min(math.sin(math.radians(v.entry_angle)), math.sin(math.radians(last)))
@@ -136,6 +138,10 @@ def check_cut(v, turn_time):
     require(v.backing <= v.cutter_radius, "backing", v.backing, f"at most cutter_radius = {v.cutter_radius:g}", "m")
     if v.window:
         check_window(v)
+    else:
+        longest = v.cutter_radius * math.radians(LAST_ANGLE - last)
+        require(v.run_out < longest, "run_out", v.run_out, f"less than {longest:.3g}, so that the rock, whose cut ends "
+                f"at {last:.3g} degrees, ends before {LAST_ANGLE:g} degrees", "m")
 
 
 def check_window(v):
@@ -173,8 +179,8 @@ class Track:
         own, far = self._arc(angle, self.radius), self._arc(angle, self.radius + v.backing)
         before = self._arc(np.linspace(angle[0] - 1.0, angle[-1] + 1.0, 240), self.radius)
         before[:, 0] -= v.feed
-        # The free surface from the entry's radius to the last one.
-        seen = [np.arctan2(before[:, 0] - x, -before[:, 1]) for x in (start, end)]
+        # The free surface from the entry's radius to the last one. The path goes on past 180 degrees.
+        seen = [np.unwrap(np.arctan2(before[:, 0] - x, -before[:, 1])) for x in (start, end)]
         free = before[(seen[0] >= angle[0]) & (seen[1] <= angle[-1])]
         self.free, self.own, self.far, self.ends = free, own, far, (start, end)
         self.chip_area = v.feed * self.radius * (math.cos(angle[0]) - math.cos(angle[0] + self.spin * v.cut_time))

@@ -127,6 +127,17 @@ def test_segments_in_a_window_meet_the_same_rock_in_each_turn(tmp_path):
         assert np.array_equal(rows[1][name], rows[3][name])
 
 
+def test_the_free_surface_goes_on_to_the_end_of_a_long_run_out(tmp_path):
+    """To 157 degrees from the lowest point: the path before it is looked for past 180 degrees."""
+    given = dict(window="false", cut_time=0.1, run_out=1.5, scale_factor=6, tool="segments", segment=0.01,
+                 reshape="false", heat="false", out=tmp_path / "out")
+    assert refusals(SCRIPT, tmp_path, [arguments(given)]) == [(0, "")]
+    with np.load(tmp_path / "out/model.npz") as model:
+        chords = np.linalg.norm(np.diff(model["free_surface"], axis=0), axis=1)
+    # The tip's speed varies with the angle between its rotation and the swing.
+    assert len(chords) > 50 and np.ptp(chords) < 0.5 * chords.mean()
+
+
 IN_WINDOW = dict(window="true")
 REFUSED = [
     (dict(cut_time=4), "cut_time = 4"), (dict(feed=0.01), "feed = 0.01"), (dict(backing=0.01), "backing = 0.01"),
@@ -140,6 +151,7 @@ REFUSED = [
     (dict(IN_WINDOW, window_ahead=0.1), "window_ahead = 0.1"),
     (dict(IN_WINDOW, window_behind=0.05), "window_behind = 0.05"),
     (dict(IN_WINDOW, window_ahead=0.12, window_behind=0.07), "window_ahead = 0.12"),
+    (dict(run_out=1.9), "run_out = 1.9 m: must be less than 1.75, so that the rock, whose cut ends at 26.5 degrees"),
     (dict(window_behind=0.1), "window_behind = 0.1 m: must be left out with window"),
     (dict(IN_WINDOW, run_out=0.05), "run_out = 0.05 m: must be left out with window")]
 
