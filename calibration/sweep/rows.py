@@ -47,8 +47,8 @@ def checked(line, row, name, groups):
         values = parameters.read(groups, [f"--{key}={value}" for key, value in given.items()])
     except ParameterError as error:
         raise ParameterError(error.name, error.value, f"{error.rule} (line {line})", error.unit) from None
-    given = {key: value for key, value in given.items() if key not in ("out", "resume")}
-    return {"name": name, "given": given, "threads": int(threads), "environment": others, "out": row.get("out", ""),
+    return {"name": name, "given": {key: value for key, value in given.items() if key not in ("out", "resume")},
+            "threads": int(threads), "environment": others, "out": given.get("out", ""),
             "values": {key: value for key, value in values.items() if key not in run.NOT_IDENTITY}}
 
 

@@ -179,6 +179,14 @@ def test_bad_tables_are_refused_before_a_row_runs(tmp_path, capsys, header, row,
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.parametrize("cells, folder", [(("-", "-"), "out/rows"), (("a", "a"), "a"), (("a", "-"), "out/rows")])
+def test_the_folder_is_that_of_all_rows_or_named_by_the_table(tmp_path, monkeypatch, cells, folder):
+    monkeypatch.chdir(tmp_path)
+    words = table(tmp_path / "rows.table", "seed out", *(f"{seed} {cell}" for seed, cell in enumerate(cells)))
+    rows, _, found = sweep.read_rows(words, SCRIPT, "")
+    assert str(found) == folder and [row.given for row in rows] == [{"seed": "0"}, {"seed": "1"}]
+
+
 def test_a_row_that_is_not_there_is_refused(tmp_path, capsys):
     words = table(tmp_path / "rows.table", "description seed", "a 1", "b 2")
     assert sweep.main([words, SCRIPT, "--out", str(tmp_path / "out"), "--row", "9"]) == 2
