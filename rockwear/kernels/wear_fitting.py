@@ -10,6 +10,8 @@ ROUND_OFF = 1e-9
 """Relative deviation of tests that is none."""
 ROUNDS = 4
 """Fits one after the other, each with errors as parts of the depths of the one before."""
+SILENT = dict(over="ignore", divide="ignore", invalid="ignore")
+"""Of numpy where what is not finite is refused afterwards."""
 
 
 @dataclass
@@ -67,6 +69,12 @@ def _factor(chi2, freedom, known):
     return scatter if scatter > ROUND_OFF**2 else np.nan
 
 
+def _check_range(test, *arrays):
+    """Raise ParameterError where what is computed of the tests is not finite."""
+    require(all(np.isfinite(array).all() for array in arrays), "tests", len(test.depth), "in the range of numbers: "
+            "the law's power of pressure over hardness, or depth over distance, comes out as 0 or infinite")
+
+
 def fit_linear(columns, test, error):
     """Least squares for depth = sum k_i column_i, k_i >= 0, weighted by the (m,) relative errors, if known. -> Fit.
 
@@ -80,13 +88,15 @@ def fit_linear(columns, test, error):
     known = bool(np.all(error > 0))
     depth = test.depth
     for _ in range(ROUNDS):
-        weight = 1 / (depth * (error if known else 1.0))
-        matrix, right = columns * weight[:, None], test.depth * weight
-        scale = np.linalg.norm(matrix, axis=0)
-        require(count >= unknown and np.linalg.cond(matrix / scale) < 1e8, "tests", count,
-                f"at least {unknown}, at different pressure over hardness, to tell modes of different exponents apart")
-        k = nnls(matrix / scale, right)[0] / scale
-        depth = columns @ k
+        with np.errstate(**SILENT):
+            weight = 1 / (depth * (error if known else 1.0))
+            matrix, right = columns * weight[:, None], test.depth * weight
+            scale = np.linalg.norm(matrix, axis=0)
+            _check_range(test, right, scale, 1 / scale)
+            require(count >= unknown and np.linalg.cond(matrix / scale) < 1e8, "tests", count, f"at least {unknown}, "
+                    "at different pressure over hardness, to tell modes of different exponents apart")
+            k = nnls(matrix / scale, right)[0] / scale
+            depth = columns @ k
     chi2 = float(np.sum((right - matrix @ k)**2))
     variance = np.diag(np.linalg.inv((matrix / scale).T @ (matrix / scale))) / scale**2
     uncertainty = np.sqrt(variance * _factor(chi2, count - unknown, known))
@@ -100,10 +110,12 @@ def fit_line(power_law, start, test, load):
     standard error)). Raises ParameterError for fewer than three tests, or equal loads.
     """
     require(len(test.depth) > 2, "tests", len(test.depth), "at least 3 to fit an exponent as well")
-    x = np.log(load)
+    with np.errstate(**SILENT):
+        x, rate = np.log(load), np.log(test.depth / test.distance)
+    _check_range(test, x, rate)
     require(np.ptp(x) > 1e-9, "pressure", float(test.pressure[0]), "different over hardness in some tests, to "
             "fit an exponent", "Pa")
-    law, rate = start, np.log(test.depth / test.distance)
+    law = start
     for _ in range(2):  # the weight of errors of p / H depends on the exponent
         error = law.error_of(test)
         known = np.all(error > 0)
@@ -112,7 +124,9 @@ def fit_line(power_law, start, test, load):
         solution = np.linalg.lstsq(matrix, rate * weight, rcond=None)[0]
         require(solution[0] > 0, "fitted exponent", float(solution[0]),
                 "greater than 0: these tests wear less the higher their pressure over hardness is")
-        law = power_law(k=float(np.exp(solution[1])), exponent=float(solution[0]))
+        with np.errstate(**SILENT):
+            k = float(np.exp(solution[1]))
+        law = power_law(k=k, exponent=float(solution[0]))
     rest = rate * weight - matrix @ solution
     spread = np.sqrt(np.diag(np.linalg.inv(matrix.T @ matrix)) * _factor(rest @ rest, len(x) - 2, known))
     model = law.k * law.depth_per_k(test)

@@ -176,6 +176,20 @@ def test_an_exponent_that_cannot_be_is_said_to_be_fitted(tmp_path, capsys):
     assert "fitted exponent = -0.79" in capsys.readouterr().err
 
 
+@pytest.mark.filterwarnings("error::RuntimeWarning")
+@pytest.mark.parametrize("force, depth, law", [
+    ("1e-20", 1, "power --exponent 20"), ("1e30", 1, "power --exponent 20"), ("885", "1e300", "power --exponent 20"),
+    ("1e-300", 1, "modes --modes 1/1/0.5,1/2/0.5"), ("1e-300", 1, "pressure"),
+    ("885", "1e-320", "power --exponent fit")])
+def test_values_out_of_the_range_of_numbers_end_in_one_line(tmp_path, capsys, force, depth, law):
+    file = tmp_path / "far.csv"
+    file.write_text("force [N],area [mm2],distance [m],depth [mm],hardness [Pa]\n" + "".join(
+        f"{f},26,100,{w},5e9\n" for f, w in ((force, depth), (1000, 2), (2000, 4))), encoding="utf-8")
+    assert main([str(file), "--wear_law", *law.split()]) == 2
+    said = capsys.readouterr().err
+    assert said.startswith("error: tests = 3: must be in the range of numbers: ") and said.count("\n") == 1
+
+
 def test_a_file_that_is_not_there(capsys):
     assert main(["nowhere.csv"]) == 2 and "nowhere.csv" in capsys.readouterr().err
 

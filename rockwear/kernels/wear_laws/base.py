@@ -6,7 +6,7 @@ import numpy as np
 
 from rockwear.kernels.checks import not_negative, positive, require
 from rockwear.kernels.parameter import Parameter, number
-from rockwear.kernels.wear_fitting import fit_linear
+from rockwear.kernels.wear_fitting import SILENT, fit_linear
 
 WEAR_LAWS = {}
 """{name: class} of all laws."""
@@ -83,9 +83,12 @@ class WearLaw(ABC):
     def fit(self, test):
         """The k of all modes, none negative, by least squares over a LaboratoryTest. -> (law, Fit).
 
-        Raises ParameterError where the tests cannot tell the modes apart: too few of them, or all at one p / H.
+        Raises ParameterError where the tests cannot tell the modes apart: too few of them, or all at one p / H; and
+        where they are out of the range of numbers.
         """
-        found = fit_linear(self.depths(test), test, self.error_of(test))
+        with np.errstate(**SILENT):
+            columns = self.depths(test)
+        found = fit_linear(columns, test, self.error_of(test))
         return self._with(found.k), found
 
 
