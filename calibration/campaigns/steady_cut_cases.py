@@ -72,6 +72,8 @@ ROCKS = {
         "no grains": dict(grain_edge=0.0),
         "grains of 1.6 mm, 3 times as strong": dict(HALF, grain_edge=1.6e-3, grain_strength=3.0),
         "grains of 1.6 mm, 6 times as strong": dict(HALF, grain_edge=1.6e-3, grain_strength=6.0),
+        "grains of 1.6 mm, 3 times as strong, fracture energy 16": dict(
+            HALF, grain_edge=1.6e-3, grain_strength=3.0, bond_fracture_energy=16.0),
         "grains of 3.2 mm, 3 times as strong": dict(HALF, grain_edge=3.2e-3, grain_strength=3.0),
         "Weibull modulus 2": dict(weibull_modulus=2.0),
         "fracture energy 30": dict(bond_fracture_energy=30.0),
