@@ -31,7 +31,7 @@ WORN_2003 = dict(ROCK_2003, wear_acceleration=7000, hardness_temperature=293)
 TURNS = {
     "P": ("[Rojek 2014, 5]", {}, (1,)),
     "M-I": ("[Rojek 2003, 12.1.2], I unworn", dict(ROCK_2003, wear_acceleration=0), (1,)),
-    "M-I-worn": ("[Rojek 2003, 12.1.3], I", WORN_2003, (1,)),
+    "M-I-worn": ("[Rojek 2003, 12.1.3], I", WORN_2003, (1, 2)),
     "M-II": ("[Rojek 2003, 12.2], II", dict(WORN_2003, tool_radius_min=0.7e-3, tool_radius_max=0.7e-3,
                                             tooth_height=0.1386, tooth_width=0.1386), (1,))}
 """{name: (what it is, parameters, seeds)} of the sources' three turns."""
