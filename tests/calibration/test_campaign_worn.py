@@ -11,8 +11,7 @@ from rockwear.kernels.steady_record import Measured
 from rockwear.report.folder import RunFolder
 from tests.running import packing
 
-TINY = {**sharp_and_worn.CUT, "discs_per_depth": 4, "cut_length": 0.02, "velocity": 16.0,
-        "snapshot_period": 2.5e-4}
+TINY = {**sharp_and_worn.CUT, "discs_per_depth": 4, "cut_length": 0.02, "snapshot_period": 5e-4}
 SEEDS = 2, 3
 
 
