@@ -10,7 +10,7 @@ import math
 from scipy.optimize import brentq
 from scipy.special import erf, exp1, k0e, k1e
 
-from rockwear.kernels.analytic import diffusivity
+from rockwear.kernels.analytic import diffusivity, half_space_under_flux
 from rockwear.kernels.checks import positive, require
 
 FAST = 1e6
@@ -40,7 +40,8 @@ def moving_strip(velocity, *, half_length, flux, conductivity, density, specific
     a = diffusivity(conductivity, density, specific_heat)
     length = positive("velocity", velocity, "m/s") * positive("half_length", half_length, "m") / a
     if length > FAST:
-        return 2 * flux / conductivity * math.sqrt(2 * a * half_length / (math.pi * velocity))
+        return float(half_space_under_flux(0.0, 2 * half_length / velocity, flux=flux, conductivity=conductivity,
+                                           density=density, specific_heat=specific_heat))
     s = brentq(lambda s: k0e(s) - k0e(length - s) * math.exp(-2 * (length - s)), 1e-9 * length, (1 - 1e-12) * length)
     r = length - s
     under = s * (k0e(s) + k1e(s)) + r * math.exp(-2 * r) * (k0e(r) - k1e(r))

@@ -75,6 +75,7 @@ def _check_range(test, *arrays):
             "the law's power of pressure over hardness, or depth over distance, comes out as 0 or infinite")
 
 
+@np.errstate(**SILENT)
 def fit_linear(columns, test, error):
     """Least squares for depth = sum k_i column_i, k_i >= 0, weighted by the (m,) relative errors, if known. -> Fit.
 
@@ -88,21 +89,21 @@ def fit_linear(columns, test, error):
     known = bool(np.all(error > 0))
     depth = test.depth
     for _ in range(ROUNDS):
-        with np.errstate(**SILENT):
-            weight = 1 / (depth * (error if known else 1.0))
-            matrix, right = columns * weight[:, None], test.depth * weight
-            scale = np.linalg.norm(matrix, axis=0)
-            _check_range(test, right, scale, 1 / scale)
-            require(count >= unknown and np.linalg.cond(matrix / scale) < 1e8, "tests", count, f"at least {unknown}, "
-                    "at different pressure over hardness, to tell modes of different exponents apart")
-            k = nnls(matrix / scale, right)[0] / scale
-            depth = columns @ k
+        weight = 1 / (depth * (error if known else 1.0))
+        matrix, right = columns * weight[:, None], test.depth * weight
+        scale = np.linalg.norm(matrix, axis=0)
+        _check_range(test, right, scale, 1 / scale)
+        require(count >= unknown and np.linalg.cond(matrix / scale) < 1e8, "tests", count,
+                f"at least {unknown}, at different pressure over hardness, to tell modes of different exponents apart")
+        k = nnls(matrix / scale, right)[0] / scale
+        depth = columns @ k
     chi2 = float(np.sum((right - matrix @ k)**2))
     variance = np.diag(np.linalg.inv((matrix / scale).T @ (matrix / scale))) / scale**2
     uncertainty = np.sqrt(variance * _factor(chi2, count - unknown, known))
     return Fit(k=k, uncertainty=uncertainty, depth=columns @ k, misfit=misfit(columns @ k, test, error, unknown))
 
 
+@np.errstate(**SILENT)
 def fit_line(power_law, start, test, load):
     """k and n of dw/ds = k (load)^n: a straight line through log(w / s) over log(load), weighted by known errors.
 
@@ -110,8 +111,7 @@ def fit_line(power_law, start, test, load):
     standard error)). Raises ParameterError for fewer than three tests, or equal loads.
     """
     require(len(test.depth) > 2, "tests", len(test.depth), "at least 3 to fit an exponent as well")
-    with np.errstate(**SILENT):
-        x, rate = np.log(load), np.log(test.depth / test.distance)
+    x, rate = np.log(load), np.log(test.depth / test.distance)
     _check_range(test, x, rate)
     require(np.ptp(x) > 1e-9, "pressure", float(test.pressure[0]), "different over hardness in some tests, to "
             "fit an exponent", "Pa")
@@ -124,9 +124,7 @@ def fit_line(power_law, start, test, load):
         solution = np.linalg.lstsq(matrix, rate * weight, rcond=None)[0]
         require(solution[0] > 0, "fitted exponent", float(solution[0]),
                 "greater than 0: these tests wear less the higher their pressure over hardness is")
-        with np.errstate(**SILENT):
-            k = float(np.exp(solution[1]))
-        law = power_law(k=k, exponent=float(solution[0]))
+        law = power_law(k=float(np.exp(solution[1])), exponent=float(solution[0]))
     rest = rate * weight - matrix @ solution
     spread = np.sqrt(np.diag(np.linalg.inv(matrix.T @ matrix)) * _factor(rest @ rest, len(x) - 2, known))
     model = law.k * law.depth_per_k(test)

@@ -7,7 +7,7 @@ events a layer of the tool is worn off.
 """
 import numpy as np
 
-from rockwear.kernels.polygon import contour, nearest_arc
+from rockwear.kernels.polygon import contour, nearest_arc, perimeter
 
 MIN_BLOCKS = 8
 """Least number of blocks of a record from which its scatter is estimated."""
@@ -19,7 +19,7 @@ ENOUGH_EVENTS = 10
 
 def place_length(outline):
     """m, length of a place of a profile (k, 2) m: PLACE, or a part of the profile where it has few of these."""
-    return min(PLACE, float(np.linalg.norm(outline - np.roll(outline, 1, axis=0), axis=1).sum()) / PLACES)
+    return min(PLACE, perimeter(outline) / PLACES)
 
 
 def places(outline, points):

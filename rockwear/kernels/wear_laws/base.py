@@ -80,15 +80,14 @@ class WearLaw(ABC):
     def _with(self, k):
         """The same law with these k, one a mode."""
 
+    @np.errstate(**SILENT)
     def fit(self, test):
         """The k of all modes, none negative, by least squares over a LaboratoryTest. -> (law, Fit).
 
         Raises ParameterError where the tests cannot tell the modes apart: too few of them, or all at one p / H; and
         where they are out of the range of numbers.
         """
-        with np.errstate(**SILENT):
-            columns = self.depths(test)
-        found = fit_linear(columns, test, self.error_of(test))
+        found = fit_linear(self.depths(test), test, self.error_of(test))
         return self._with(found.k), found
 
 
