@@ -76,26 +76,31 @@ ROCKS = {
             HALF, grain_edge=1.6e-3, grain_strength=3.0, bond_fracture_energy=16.0),
         "grains of 3.2 mm, 3 times as strong": dict(HALF, grain_edge=3.2e-3, grain_strength=3.0),
         "Weibull modulus 2": dict(weibull_modulus=2.0),
+        "bonding gap 0.075 mm": dict(HALF, bonding_gap=7.5e-5),
+        "bonds 1.5 times as stiff": dict(HALF, kn=19.5e9, kt=7.8e9),
         "fracture energy 30": dict(bond_fracture_energy=30.0),
         "fracture energy 5": dict(bond_fracture_energy=5.0)}.items()}}
 """Rocks that are cut as the base is, at other depths of cut too: finer discs make another rock."""
 HALVED, STRONGER, BENTHEIM, MEDIUM, PADOVA, NO_GRAINS = (f"{EIGHT}, {name}" for name in (
     "strengths halved", "strengths times 1.4", "bentheim", "medium_sandstone", "p_sandstone", "no grains"))
+WIDER = f"{EIGHT}, bonding gap 0.075 mm"
+"""Bonds over gaps up to a quarter of a mean radius, not a twelfth."""
 THAT_BREAK = tuple(case for case in ROCKS if "times as strong" in case)
 """Larger grains than those of the base, which break."""
 UNTESTED = SCRATCH, DEEPER
 """Rocks without a laboratory test of their own: a specimen of so many such grains is too large for these speeds."""
-PULLED = BASE, HALVED, STRONGER, BENTHEIM, MEDIUM, PADOVA, *THAT_BREAK
+PULLED = BASE, HALVED, STRONGER, BENTHEIM, MEDIUM, PADOVA, WIDER, *THAT_BREAK
 """Rocks that are pulled in the laboratory, too; the others have the bonds of the base."""
 CHANGES = {
     "velocity 4 m/s": SLOWER,
     "velocity 2 m/s": dict(velocity=2.0, snapshot_period=2e-3),
+    "window twice as large": dict(HALF, window_behind=0.024, window_ahead=0.08, window_height=0.06),
     "window 1.5 times as long": dict(window_behind=0.018, window_ahead=0.06),
     LOW: dict(window_height=0.02),
     "window 8 depths high": dict(window_height=0.04),
     "window 5 depths ahead": dict(window_ahead=0.025),
     "boundary fixed": dict(boundary="fixed"),
-    "ends free": dict(boundary="free"),
+    "ends free": dict(HALF, boundary="free"),
     "rake -15°": dict(rake=-15.0),
     "rake 15°": dict(rake=15.0),
     "clearance 20°": dict(clearance=20.0),

@@ -16,8 +16,9 @@ class FacetWear(WearEngine):
 
     boundary: kernels.worn_boundary.WornBoundary; tool: its bodies; work_fraction: the part of the friction work that
     counts as the tool's ([Rocky, eq. 2-53] takes one half, Archard's law all of it); reshape: False keeps the shape,
-    and only `worn` grows; wear_acceleration: the law's, for messages. `limit` is a layer of a facet as deep as the
-    initial facet's smallest altitude: what a particle of that size would be.
+    and only `worn` grows; wear_acceleration: the law's, for messages; on_remeshing(): called when facets have come to
+    other parts of the surface, whose friction so far belongs to where they were. `limit` is a layer of a facet as deep
+    as the initial facet's smallest altitude: what a particle of that size would be.
 
     `recession` is the mean over the worn volume of the depth that a facet recedes over the distance slid on it, dw/ds
     of Archard's law. Where it is not small, a face recedes from what presses on it: the contact is relieved, and wear
@@ -27,10 +28,12 @@ class FacetWear(WearEngine):
     facet.
     """
 
-    def __init__(self, *, boundary, tool, work_fraction=1.0, reshape=True, wear_acceleration=1.0, **common):
+    def __init__(self, *, boundary, tool, work_fraction=1.0, reshape=True, wear_acceleration=1.0,
+                 on_remeshing=lambda: None, **common):
         super().__init__(count=len(boundary.facets), **common)
         self.boundary, self.tool = boundary, tool
         self.work_fraction, self.reshape, self.wear_acceleration = work_fraction, reshape, wear_acceleration
+        self.on_remeshing = on_remeshing
         self.worn = np.zeros(len(boundary.facets))
         self.receded = 0.0
         self.limit = self._areas() * altitudes(boundary.vertices, boundary.facets)
@@ -63,6 +66,7 @@ class FacetWear(WearEngine):
             raise RunEnded(f"the tool's shape cannot follow its wear: {end}", False) from None
         if moved:
             if self.boundary.remeshed != remeshed:
+                self.on_remeshing()
                 self.contact.neighbours = self.boundary.neighbours()
             self.contact.shape_has_changed()
             self.tool.reshape()

@@ -19,7 +19,7 @@ class Heat(Engine):
     and in halves between rock particles, which slip in loose contacts or within their bonds. A piece of the tool
     (particle or facet) and a rock particle in contact exchange h A (T_tool - T_rock) [Rojek 2014, eq. 66] during their
     contact time; A is the piece's contact area, but no more than the rock particle is wide. It is the exact exchange of
-    two lumps, which cannot overshoot. Convection acts on the free surface [Rojek 2014, eq. 42], which is found anew
+    two lumps; what touches several gives each a part of its heat, so that none overshoots. Convection acts on the free surface [Rojek 2014, eq. 42], which is found anew
     every surface_period, and so does radiation, e sigma A (T^4 - T_ambient^4) [Rojek 2003, 7.2]. Of surfaces that face
     each other, in a crack say, each radiates to the surroundings.
 
@@ -108,10 +108,12 @@ class Heat(Engine):
         pairs, which = np.unique(np.column_stack([self.body.node_of[piece], rock]), axis=0, return_inverse=True)
         passed = np.bincount(which.ravel(), self.contact_conductance * areas * seconds, len(pairs))
         capacity, temperature = self.network.capacity, self.network.temperature
-        there = capacity[self.n + pairs[:, 0]] > 0
+        there = (capacity[self.n + pairs[:, 0]] > 0) & (passed > 0)
         node, rock, passed = pairs[there, 0], pairs[there, 1], passed[there]
         tool = self.n + node
-        lumped = capacity[tool] * capacity[rock] / (capacity[tool] + capacity[rock])
+        # Each contact of a node has the part of its capacity that it has of what passes there.
+        own, other = (capacity[one] * _share(passed, one) for one in (tool, rock))
+        lumped = own * other / (own + other)
         self.load.contact += np.bincount(node, passed, self.body.count)
         self.load.contact_kelvin += np.bincount(node, passed * temperature[rock], self.body.count)
         moved = (temperature[tool] - temperature[rock]) * lumped * -np.expm1(-passed / lumped)
@@ -163,11 +165,13 @@ class Heat(Engine):
 
     # ---- changes of tool and rock
 
-    def remove(self, worn, loose=()):
-        """Tool particles are gone: `worn` ones leave the heat of accelerated wear behind, `loose` ones take theirs."""
+    def remove(self, worn=(), loose=()):
+        """Tool particles are gone: `worn` ones leave the heat of accelerated wear behind, `loose` ones take theirs.
+        Without any: the friction so far goes to where it arose, before facets change places."""
         # The heat of their last friction comes first.
         self.network.add_heat(self._sources())
-        self._take_out(worn, loose)
+        if worn or loose:
+            self._take_out(worn, loose)
 
     def _take_out(self, worn, loose=()):
         network, temperature = self.network, self.network.temperature[self.n:]
@@ -255,3 +259,8 @@ class Heat(Engine):
         for name in ("replaced", "renewed", "clock", "surface_time", "initial_content"):
             setattr(self, name, float(state[name]))
         self.touched = state["touched"].astype(int).reshape(-1, 2)
+
+
+def _share(values, group):
+    """(k,) each of `values` (k,) > 0 over the sum of its group (k,) int."""
+    return values / np.bincount(group, values)[group]

@@ -118,9 +118,11 @@ class Cut(Scene):
         self.damping = self._make_damping()
         self.grain_damping = None
         if self.grain_quality and rock.grains is not None:
-            # Q = omega / rate of a mode of the frequency omega, of which 2 over the critical step is the highest.
+            # Q = omega / rate of a mode of the frequency omega, of which 2 over the critical step is the highest, where
+            # no dashpots of bonds make this step shorter.
+            step = plane_steps(rock, tool.contact_law)[0] if self.bond_damping else self.bonded_step
             self.grain_damping = GrainDamping(rock=rock, bonds=self.bonds, period=accuracy.damping_period,
-                                              rate=2.0 / (self.grain_quality * self.bonded_step))
+                                              rate=2.0 / (self.grain_quality * step))
         self.dashpots = None
         if self.bond_damping:
             self.dashpots = BondDashpots(rock=rock, bonds=self.bonds, ratio=self.bond_damping)
@@ -187,7 +189,7 @@ class Cut(Scene):
     def _tool_temperature(self):
         return self.heat.temperature_of_pieces() if self.heat else np.full(self.tool.count, self.first_temperature)
 
-    def _on_removal(self, worn, loose):
+    def _on_removal(self, worn=(), loose=()):
         if self.heat:
             self.heat.remove(worn, loose)
         if not self.tool.bodies.body_of:

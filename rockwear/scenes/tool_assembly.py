@@ -57,8 +57,8 @@ class ToolAssembly(ABC):
 
     def make_engines(self, *, motion, increment, wear_period, temperature, on_removal):
         """Make the tool's bodies and engines. motion: of kernels.rigid_motion; increment: VelocityIncrement of the
-        rock;
-        temperature: a function giving (pieces,) K; on_removal(worn, loose): told of particles that have gone."""
+        rock; temperature: a function giving (pieces,) K; on_removal(worn, loose): told of particles that have gone,
+        and without any of facets that have come to other places."""
         self.bodies = self._make_bodies(motion)
         self.contact = self._make_contact(increment)
         self.wear_engine = self._make_wear(wear_period, temperature, on_removal)
@@ -220,9 +220,9 @@ class ParticleAssembly(ToolAssembly):
 
 
 class FacetAssembly(ToolAssembly):
-    """A tool of facets, a model.facet_tool.FacetTool: segments in the plane, triangles in space; its vertices move
-    with the
-    wear unless reshape is False.
+    """A tool of facets, a model.facet_tool.FacetTool: segments in the plane, triangles in space.
+
+    Its vertices move with the wear unless reshape is False.
 
     work_fraction: part of the friction work that wears the tool; thermal_body: a function that makes the body behind
     the facets, for heat.
@@ -247,8 +247,8 @@ class FacetAssembly(ToolAssembly):
     def _make_wear(self, period, temperature, on_removal):
         return FacetWear(contact=self.contact, boundary=self.model.boundary, tool=self.bodies, law=self.wear.law,
                          hardness=self.wear.hardness, temperature=temperature, work_fraction=self.work_fraction,
-                         reshape=self.reshape, wear_acceleration=self.wear.acceleration, volume_unit=self.units.volume,
-                         period=period)
+                         reshape=self.reshape, wear_acceleration=self.wear.acceleration, on_remeshing=on_removal,
+                         volume_unit=self.units.volume, period=period)
 
     def _shape_changes(self):
         return super()._shape_changes() and self.reshape
@@ -309,6 +309,9 @@ class FacetAssembly(ToolAssembly):
 
     def warnings(self):
         recession, found = self.wear_engine.recession, super().warnings()
+        if not self.model.boundary.fixed.any():
+            found.append("the shank holds no facet of the tool, which has neither a level top (+y) nor an upright back "
+                         "(-x): all of its faces wear")
         if not self.reshape or not recession > RECESSION:
             return found
         factor = self.wear.acceleration

@@ -33,6 +33,13 @@ def test_facets_of_one_node_exchange_heat_as_one_contact(found, space, contact):
 
 
 @pytest.mark.parametrize("space", SPACES)
+def test_a_node_on_two_particles_does_not_overshoot(found, space):
+    got = found[space]["shared"]
+    for row in got["rows"]:
+        assert row == pytest.approx(3 * [got["mixed"]], rel=1e-12)
+
+
+@pytest.mark.parametrize("space", SPACES)
 def test_free_surfaces_of_tool_and_rock_radiate(found, space):
     got = found[space]["radiating"]
     assert got["coldest"] < 900 and got["dark"] > 20 and got["rock_cooled"] > 0.1
@@ -60,6 +67,12 @@ def test_accelerated_wear_leaves_its_heat_behind(found, space):
 def test_a_restored_engine_goes_on_bit_for_bit(found, space):
     got = found[space]["restart"]
     assert got["same_at_once"] and got["same"] and got["dead"] >= 20
+
+
+def test_friction_stays_where_it_arose_when_facets_change_places(found):
+    got = found["remeshed"]
+    assert got["moved"] > 5
+    assert got["rise"] == pytest.approx(got["should"], rel=1e-9, abs=1e-9)
 
 
 def test_a_whole_tool_replaces_a_worn_one(found):

@@ -3,6 +3,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy.integrate import trapezoid
 
 from rockwear.kernels.bond_laws import (
     Cohesive, Coulomb, ElasticBrittle, ElasticDamage, ElastoPlasticSoftening, Hyperbolic, NonlinearElastoPlastic,
@@ -36,6 +37,18 @@ def every_law(test):
 
 def both_softening(test):
     return pytest.mark.parametrize("kind", SOFTENING)(test)
+
+
+@pytest.mark.parametrize("law", [one for one in LAWS.values() if hasattr(one, "stronger")],
+                         ids=[name for name, one in LAWS.items() if hasattr(one, "stronger")])
+def test_a_bond_within_a_grain_takes_the_energy_of_its_own_stiffness(law):
+    """Pulled apart it takes what its law says of it, whatever law it was made from."""
+    inner = law.stronger(2.0, kn=4 * KN, kt=3 * KT)
+    energy, _ = inner.fracture_energy()
+    opening = np.linspace(0.0, 4 * energy / inner.Rn, 20001)
+    forces, _, _ = follow(inner, opening, np.zeros((len(opening), 1)))
+    assert forces[:, 0].max() == pytest.approx(2 * RN, rel=1e-3) and forces[-1, 0] == 0.0
+    assert trapezoid(forces[:, 0], opening) == pytest.approx(energy, rel=2e-3)
 
 
 def assert_close(force, expected, strength=RN):

@@ -158,6 +158,20 @@ def test_a_half_of_the_work_wears_half(worn, tmp_path):
     assert value(run, "maximum_wear_depth") == pytest.approx(deepest, rel=1e-12, abs=0) and length.max() <= 1e-3
 
 
+def test_a_tool_that_the_shank_cannot_hold_is_said(worn, tmp_path):
+    """Its top and its back lean: all of its faces wear."""
+    file = tmp_path / "tooth.csv"
+    file.write_text("0,0\n0.004,0.03\n-0.02,0.026\n-0.016,0.005\n", encoding="utf-8")
+    given = {name: v for name, v in SHORT.items() if name not in ("tooth_height", "tooth_width", "rake", "clearance")}
+    out = tmp_path / "out"
+    run = run_script(SEGMENTS, *arguments({**given, "outline": file, "start_up": 1e-4, "cycles": 0, "report": "false",
+                                           "out": out}), out=out)
+    assert run.code == 0, run.stderr
+    assert not np.load(run.out / "model.npz")["tool_fixed"].any()
+    said, unsaid = ([line for line in one.summary["warnings"] if "holds no facet" in line] for one in (run, worn))
+    assert len(said) == 1 and not unsaid
+
+
 def test_stopped_and_resumed_equals_never_stopped(worn, tmp_path):
     out = tmp_path / "out"
     for number, after in ((signal.SIGKILL, 2), (signal.SIGTERM, 4)):

@@ -10,6 +10,8 @@ CASES = {
     "heat and expansion": ("cutting", {**SMALL, **EXPANDING}), "heat": ("cutting", SMALL),
     "cold": ("cutting", {**SMALL, **COLD}), "cold, without wear": ("cutting", {**SMALL, **COLD, **STILL}),
     "segments": ("cutting", {**SMALL, **COLD, "tool": "segments"}),
+    "grains": ("cutting", {**SMALL, **COLD, "grain_edge": 4e-3}),
+    "grains, dashpots": ("cutting", {**SMALL, **COLD, "grain_edge": 4e-3, "bond_damping": 1.0}),
     "heat, segments": ("cutting", {**SMALL, "tool": "segments"}), "space": ("cutting_3d", BLOCK),
     "space, concrete model": ("cutting_3d", {**{name: v for name, v in BLOCK.items() if name not in ("Rn", "Rt")},
                                              "bond_law": "cohesive", "bond_tension": 1e6}),
@@ -62,3 +64,9 @@ def test_an_engine_is_made_where_its_physics_is(found):
         # An engine that has been made is one of the loop: none is made to lie about.
         assert sum(there["made"].get(name, 0) for name in there["made"] if name not in (
             "HeatNetwork", "ParticleBody", "FacetBody")) == len(there["engines"])
+
+
+def test_the_quality_of_grains_does_not_depend_on_dashpots(found):
+    """These take the highest frequency of the rock to a shorter step, and not to a higher frequency."""
+    rate, damped = (found[case]["grain_rate"] for case in ("grains", "grains, dashpots"))
+    assert rate == damped > 1e4 and found["grains"]["step"] > 2 * found["grains, dashpots"]["step"]

@@ -37,11 +37,6 @@ class ElastoPlasticSoftening(LinearBondLaw):
     name = "plastic"
     parameters = (KN, KT, RN, RT, SLOPE, MU)
 
-    def __init__(self, *, kn, kt, Rn, Rt, H, mu):
-        super().__init__(kn=kn, kt=kt, Rn=Rn, Rt=Rt, H=H, mu=mu)
-        # (R/k)/w = H/(H + k), in the form that H = inf leaves finite.
-        self._loss_n, self._loss_t = 1.0 / (1.0 + self.kn / self.H), 1.0 / (1.0 + self.kt / self.H)
-
     def elastic_domain(self, bond, Fn=0.0, Ft=0.0):
         """Of the rectangles in the ellipse the one whose corner is as many N from Fn as from Ft; under compression too
         strong for that, all of the shear strength and next to no tension."""
@@ -67,7 +62,8 @@ class ElastoPlasticSoftening(LinearBondLaw):
 
         # Radial return to the new size q: the fall size - q is (trial - q) loss, so fall (1 - loss) = excess loss.
         cos, sin = x / trial, y / trial
-        loss = math.hypot(cos * self._loss_n, sin * self._loss_t)
+        # (R/k)/w = H/(H + k), in the form that H = inf leaves finite.
+        loss = math.hypot(cos / (1.0 + self.kn / self.H), sin / (1.0 + self.kt / self.H))
         rest = max(1.0 - loss, 0.0)  # 0 where H = inf: compare before dividing
         fall = (trial - size) * loss
         if size * rest - fall <= rest * self.mu * max(-Fn, 0.0) / self.Rt:

@@ -10,11 +10,15 @@ from types import SimpleNamespace
 import numpy as np
 from yade import O, utils
 
+from rockwear.engines.facet_contact import SLIP
+from rockwear.engines.facet_wear import FacetWear
 from rockwear.engines.heat import Heat
+from rockwear.kernels.archard import Hardness
 from rockwear.kernels.boundary import area_vectors, prism
 from rockwear.kernels.conduction import STEFAN_BOLTZMANN, HeatNetwork
 from rockwear.kernels.polygon import tooth
 from rockwear.kernels.voronoi import cells
+from rockwear.kernels.wear_laws import WORK
 from rockwear.model.facet_tool import FacetTool
 from rockwear.model.materials import STEEL
 from rockwear.model.particle_tool import LayeredTool
@@ -179,6 +183,24 @@ def exchange(make):
     return found
 
 
+def shared(make):
+    """One node on both rock particles, in perfect contact at once: all three reach one temperature, and stay there."""
+    tool, body = make()
+    facet = int(np.flatnonzero(lowest(tool))[3])
+    node = int(body.node_of[facet])
+    heat = engine(body, Engines(tool.count, body.positions.shape[1]), contact_conductance=1e12,
+                  tool_paths=(np.empty((0, 2), int), np.empty(0)))
+    state = heat.network.state()
+    state["temperature"][2 + node] = 700.0
+    heat.network.restore(state)
+    rows = []
+    for _ in range(3):
+        visit(heat, touching={(facet, 0): STEP, (facet, 1): STEP})
+        rows.append(heat.network.temperature[[0, 1, 2 + node]].tolist())
+    capacity = heat.network.capacity[2 + node]
+    return {"rows": rows, "mixed": float((2 * C_ROCK * FIRST + capacity * 700.0) / (2 * C_ROCK + capacity))}
+
+
 def worn(make, acceleration):
     """A hot bottom recedes by two rows of nodes: what leaves, what stays, and that the balance closes."""
     tool, body = make()
@@ -312,10 +334,66 @@ def particles():
             "gone": int((~tool.erosion.alive).sum())}
 
 
+class Rubbed(Engines):
+    """Contacts that rub the bottom of the tool, `depth` (m) of which the wear takes at each visit."""
+
+    def __init__(self, tool, depth):
+        super().__init__(tool.count, 2)
+        self.tool, self.depth = tool, depth
+
+    def areas(self):
+        boundary = self.tool.boundary
+        return np.linalg.norm(area_vectors(boundary.vertices, boundary.facets), axis=1)
+
+    def take_slid(self):
+        where = np.where(lowest(self.tool), self.areas(), 0.0)
+        return {WORK: where, SLIP: where}
+
+    def volume(self, slid, hardness, areas):
+        """As a wear law."""
+        return self.depth * slid[WORK]
+
+    def elastic_energy(self):
+        return 0.0
+
+    def nothing(self, *_):
+        return None
+
+    reshape = shape_has_changed = contact_inside_tool = nothing
+
+
+def remeshed():
+    """Friction before facets change places, by the places where it arose: at each node, beside what it should be."""
+    tool, body = in_plane()
+    contact = Rubbed(tool, 0.1e-3)
+    heat = engine(body, contact, tool_paths=(np.empty((0, 2), int), np.empty(0)))
+    wear = FacetWear(contact=contact, boundary=tool.boundary, tool=contact, law=contact,
+                     hardness=Hardness.constant(1e9), temperature=lambda: np.full(tool.count, FIRST),
+                     on_remeshing=heat.remove)
+    for _ in range(60):
+        visit(heat)
+        pending, before = dict(enumerate((1.0 + np.arange(tool.count)).tolist())), tool.boundary.remeshed
+        places, first = body.node_of.copy(), heat.network.temperature[2:].copy()
+        heat.tool_contact.put(pending, {})
+        wear.act()
+        if tool.boundary.remeshed > before:
+            body.follow()
+            if (moved := int((body.node_of != places).sum())) > 5:
+                break
+        heat.tool_contact.put({}, {})
+    O.dt, heat.last_iteration = STEP, O.iter - 1
+    heat.act()
+    rise = (heat.network.temperature[2:] - first) * heat.network.capacity[2:]
+    should = 0.85 * 0.75 * np.bincount(places, list(pending.values()), body.count)
+    return {"moved": moved, "rise": rise.tolist(), "should": should.tolist()}
+
+
 MAKERS = {"plane": in_plane, "space": in_space}
-found = {"renewed": renewed(), "rock renewed": rock_renewed(), "absent": absent(), "particles": particles()}
+found = {"renewed": renewed(), "remeshed": remeshed(), "rock renewed": rock_renewed(), "absent": absent(),
+         "particles": particles()}
 for name, maker in MAKERS.items():
     found[name] = {"radiating": radiating(maker), "friction": friction(maker), "exchange": exchange(maker),
+                   "shared": shared(maker),
                    "restart": restart(maker), "worn": {str(a): worn(maker, a) for a in (1.0, 1e4)}}
 with open(sys.argv[-1], "w", encoding="utf-8") as file:
     json.dump(found, file)

@@ -41,9 +41,10 @@ def found(name, words):
         scene = module.make(parameters.read([*module.GROUPS, COMMON], words))
         scene.build()
         scene.run_chunk()
+    grains = getattr(scene, "grain_damping", None)
     tool, surface = scene.tool, getattr(scene.tool.model, "erosion", None)
     return {"made": dict(made), "engines": [engine.name for engine in scene.engines], "rock": scene.rock.count,
-            "pieces": tool.count, "of_tool": len(tool.bodies.body_of), "bodies": sum(1 for _ in O.bodies),
+            "grain_rate": grains.rate if grains else 0.0, "step": scene.time_step, "pieces": tool.count, "of_tool": len(tool.bodies.body_of), "bodies": sum(1 for _ in O.bodies),
             "surface": len(surface.surface) if surface else tool.count, "balances": list(scene.output.balances())}
 
 
