@@ -29,7 +29,7 @@ FAST = dict(WINDOW, backing=0.04, time_scale=10)
 ROCK_2003 = dict(kt=20e9, Rt=1e6, mu=0.839, hardness_table="MET91", wear_coefficient=0.01128)
 WORN_2003 = dict(ROCK_2003, wear_acceleration=7000, hardness_temperature=293)
 TURNS = {
-    "P": ("[Rojek 2014, 5]", {}, (1,)),
+    "P": ("[Rojek 2014, 5]", {}, (1, 2)),
     "M-I": ("[Rojek 2003, 12.1.2], I unworn", dict(ROCK_2003, wear_acceleration=0), (1,)),
     "M-I-worn": ("[Rojek 2003, 12.1.3], I", WORN_2003, (1, 2)),
     "M-II": ("[Rojek 2003, 12.2], II", dict(WORN_2003, tool_radius_min=0.7e-3, tool_radius_max=0.7e-3,
