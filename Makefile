@@ -51,7 +51,7 @@ setup-test: setup
 # Wear is accelerated so that the tip wears away within a cut of 60 mm instead of tens of metres.
 run: setup ## cut a sandstone steadily, the tip wearing; report in out/steady_cut/report.html
 	yade -n -x -j1 yade_scripts/steady_cut.py --depth_of_cut 2e-3 --tip_radius 2e-4 --cut_length 0.06 --velocity 8 \
-	  --heat true --wear_acceleration 500 --out $(OUT)/steady_cut
+	  --heat true --wear_acceleration 500 --out "$(OUT)/steady_cut"
 
 test: setup-test ## all tests
 	$(PYTHON) -m pytest -n 2 --dist loadscope tests
@@ -61,10 +61,10 @@ test-kernels: setup-python ## the tests of the physics without YADE
 	$(PYTHON) -m pytest -n 2 tests/kernels
 
 validate: setup-sweep ## compare with exact solutions and the sources' numbers; page in out/validate
-	$(PYTHON) -m calibration.validation $(OUT)/validate
+	$(PYTHON) -m calibration.validation "$(OUT)/validate"
 
 bench: setup-sweep ## speed against error; figures and numbers in out/bench
-	$(PYTHON) -m calibration.benchmarks $(OUT)/bench
+	$(PYTHON) -m calibration.benchmarks "$(OUT)/bench"
 
 fidelity: setup-python ## every published number beside ours, from stored results; page calibration/results/fidelity.md
 	$(PYTHON) -m calibration.fidelity
@@ -74,44 +74,44 @@ WHERE := $(if $(SCHEDULER),--scheduler $(SCHEDULER))
 
 campaigns: setup-sweep ## the test tooth in four packings, two runs at a time; page in out/campaign/sweep.html
 	$(PYTHON) -m calibration.sweep yade_scripts/tooth_cycles.seeds.table yade_scripts/tooth_cycles.py \
-	  --out $(OUT)/campaign $(WHERE)
+	  --out "$(OUT)/campaign" $(WHERE)
 
 campaign-wear: setup-sweep ## test tooth and ripper worn over many cycles (hours; resumes)
-	$(PYTHON) -m calibration.campaigns.wear $(OUT)/campaign-wear $(WHERE)
+	$(PYTHON) -m calibration.campaigns.wear "$(OUT)/campaign-wear" $(WHERE)
 
 campaign-uniaxial: setup-sweep ## the laboratory: bond laws, softening slopes, micro-parameters (hours; resumes)
-	$(PYTHON) -m calibration.campaigns.uniaxial $(OUT)/campaign-uniaxial $(WHERE)
+	$(PYTHON) -m calibration.campaigns.uniaxial "$(OUT)/campaign-uniaxial" $(WHERE)
 
 campaign-grains: setup-sweep ## the Hawkesbury sandstone of grains, and what its strength depends on (hours; resumes)
-	$(PYTHON) -m calibration.campaigns.grains $(OUT)/campaign-grains $(WHERE)
+	$(PYTHON) -m calibration.campaigns.grains "$(OUT)/campaign-grains" $(WHERE)
 
 campaign-rocks: setup-sweep ## what bond laws and rock properties do to a rock, at three resolutions (hours; resumes)
-	$(PYTHON) -m calibration.campaigns.rock_laws $(OUT)/campaign-rocks $(WHERE)
+	$(PYTHON) -m calibration.campaigns.rock_laws "$(OUT)/campaign-rocks" $(WHERE)
 
 campaign-steady: setup-sweep ## what makes a steady cut what it is, one cause at a time (hours; resumes)
-	$(PYTHON) -m calibration.campaigns.steady_cut $(OUT)/campaign-steady $(WHERE)
+	$(PYTHON) -m calibration.campaigns.steady_cut "$(OUT)/campaign-steady" $(WHERE)
 
 campaign-worn: setup-sweep ## a tool worn by its own cut, and how it cuts then (an hour and a half; resumes)
-	$(PYTHON) -m calibration.campaigns.sharp_and_worn $(OUT)/campaign-worn $(WHERE)
+	$(PYTHON) -m calibration.campaigns.sharp_and_worn "$(OUT)/campaign-worn" $(WHERE)
 
 campaign-granular: setup-sweep ## angle of repose and vibrated tube (an hour; resumes)
-	$(PYTHON) -m calibration.campaigns.granular $(OUT)/campaign-granular $(WHERE)
+	$(PYTHON) -m calibration.campaigns.granular "$(OUT)/campaign-granular" $(WHERE)
 
 campaign-slow: setup-sweep ## cuts at 8 to 1 m/s that a source makes at 0.04 (hours; resumes); FULL=--full: at 0.04, too
-	$(PYTHON) -m calibration.campaigns.slow $(OUT)/campaign-slow $(FULL) $(WHERE)
+	$(PYTHON) -m calibration.campaigns.slow "$(OUT)/campaign-slow" $(FULL) $(WHERE)
 
 campaign-toughness: setup-sweep ## toughness of four rocks over the size of the specimen (an hour; resumes)
-	$(PYTHON) -m calibration.campaigns.toughness_size $(OUT)/campaign-toughness $(WHERE)
+	$(PYTHON) -m calibration.campaigns.toughness_size "$(OUT)/campaign-toughness" $(WHERE)
 
 campaign-groove: setup-sweep ## cuts in space by tools of three breadths: what their sides add (three hours; resumes)
-	$(PYTHON) -m calibration.campaigns.groove $(OUT)/campaign-groove $(WHERE)
+	$(PYTHON) -m calibration.campaigns.groove "$(OUT)/campaign-groove" $(WHERE)
 
 campaign-dredging: setup-sweep ## three turns of a dredge pick at the sources' discs, and their errors (hours; resumes)
-	$(PYTHON) -m calibration.campaigns.dredging $(OUT)/campaign-dredging $(WHERE)
+	$(PYTHON) -m calibration.campaigns.dredging "$(OUT)/campaign-dredging" $(WHERE)
 
 lint: ## check the code with flake8
 	$(call install,$(TO_LINT),flake8)
 	$(PYTHON) -m flake8
 
 clean: ## remove results
-	rm -rf $(OUT)
+	rm -rf -- "$(OUT)"

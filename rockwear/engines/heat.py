@@ -19,9 +19,9 @@ class Heat(Engine):
     and in halves between rock particles, which slip in loose contacts or within their bonds. A piece of the tool
     (particle or facet) and a rock particle in contact exchange h A (T_tool - T_rock) [Rojek 2014, eq. 66] during their
     contact time; A is the piece's contact area, but no more than the rock particle is wide. It is the exact exchange of
-    two lumps; what touches several gives each a part of its heat, so that none overshoots. Convection acts on the free surface [Rojek 2014, eq. 42], which is found anew
-    every surface_period, and so does radiation, e sigma A (T^4 - T_ambient^4) [Rojek 2003, 7.2]. Of surfaces that face
-    each other, in a crack say, each radiates to the surroundings.
+    two lumps; what touches several gives each a part of its heat, so that none overshoots. Convection acts on the free
+    surface [Rojek 2014, eq. 42], which is found anew every surface_period, and so does radiation, e sigma A (T^4 -
+    T_ambient^4) [Rojek 2003, 7.2]. Of surfaces that face each other, in a crack say, each radiates to the surroundings.
 
     network: kernels.conduction.HeatNetwork; bonds, rock_friction, tool_contact: engines; rock: the specimen; body:
     model.thermal_body.ThermalBody of the tool;

@@ -244,8 +244,9 @@ class SteadyCut(Programme):
                          f"{ENOUGH_CHIPS} tells their errors")
         known = uncertainty(forces) if self.accuracy and forces else 0.0
         if known > self.accuracy:
-            far = f"to {100 * known:.0f} %" if known < math.inf else "not at all"
-            found.append(f"the mean cutting force is known {far}, and was to be to {100 * self.accuracy:g} %: a longer "
+            far = (f"is known to {100 * known:.0f} %" if known < math.inf else
+                   "has an error that this record is too short to tell")
+            found.append(f"the mean cutting force {far}, and was to be known to {100 * self.accuracy:g} %: a longer "
                          "cut_length tells it")
         return found
 

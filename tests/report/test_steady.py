@@ -165,3 +165,22 @@ def test_gaps_and_nan_are_drawn_around(tmp_path):
           length=("m", [1e-3]), thickness=("m", [1e-3]), y=("m", [0.0]))
     write(folder / "cracks.csv", y=("m", [math.nan]), mode=("-", [1]))
     assert steady.steady_cut(run).html().count("<img") == 3
+
+
+@pytest.mark.parametrize("length, drawn", [(0.8, False), (1.2, True)])
+def test_the_groove_of_a_short_cut_is_no_tower(tmp_path, length, drawn):
+    """Shorter than the cut is deep it shows nothing; a little longer, with a deep crater, it fits a page."""
+    run = make_steady(tmp_path / "run")
+    x = np.linspace(0.0, length * DEPTH, 20)
+    write(tmp_path / "run/groove.csv", x=("m", x), height=("m", -40 * DEPTH * x / x[-1]))
+    figure = steady.groove_figure(run)
+    assert (figure is not None) == drawn
+    assert not drawn or figure.get_figheight() < 8
+
+
+def test_the_title_of_the_groove_says_what_is_known(tmp_path):
+    run = make_steady(tmp_path / "run")
+    assert "more than" in steady.groove_figure(run).axes[0].get_title(loc="left")
+    run.summary["results"]["overbreak"]["value"] = None
+    title = steady.groove_figure(run).axes[0].get_title(loc="left")
+    assert "more than" not in title and "not known" not in title

@@ -11,7 +11,8 @@ from rockwear.kernels.boundary import prism, segments
 from rockwear.report import bodies, instants, pages, plane, plots
 from rockwear.report.folder import RunFolder
 from rockwear.report.views import (
-    balances, density, forces, granular, history, key_results, outlines, speeds, stages, temperature, two_disc)
+    balances, density, forces, granular, history, key_results, outlines, speeds, stages, temperature, trust,
+    two_disc)
 from tests.report.made_up import HEADER, HOT, lattice, make_run
 
 ROOT = Path(__file__).parents[2]
@@ -312,3 +313,22 @@ def test_what_there_was_at_first_has_no_part_of_what_has_worn(tmp_path):
     run.balances["mass"] = {"unit": "kg/m", "initial": 20.0, "archard": 2e-4, "removed": 1e-4}
     shown = balances.balance_table(run, "mass")
     assert "50.0 %" in shown and "–" in shown and "1e+07" not in shown and "10000000" not in shown
+
+
+def test_the_last_stage_has_lost_what_the_run_has(tmp_path):
+    """The last wear comes after the last row of the record."""
+    run = RunFolder(make_run(tmp_path / "run"))
+    assert stages.lost(run, 1) == 0.0123456789
+    assert stages.lost(run, 0) == run.over_stage("mass_lost", np.max, 0)
+
+
+@pytest.mark.parametrize("trusted, error, end", [(700.0, 0.2, "700 times, and run as much longer."),
+                                                 (9e4, 0.05, "90000 times."),
+                                                 (9e4, None, "90000 times, and run longer to tell the distribution.")])
+def test_who_need_not_run_longer_is_not_told_to(tmp_path, trusted, error, end):
+    run = RunFolder(make_run(tmp_path / "run"))
+    run.parameters["wear_tolerance"] = 0.1
+    for name, number in (("trusted_wear_acceleration", trusted), ("wear_distribution_error", error),
+                         ("contact_events_per_particle", 60.0), ("simulated_time", 4e-3)):
+        run.summary["results"][name] = {"value": number, "unit": "s" if name == "simulated_time" else "-"}
+    assert trust.in_words(run).endswith(end)

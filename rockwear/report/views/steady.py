@@ -16,6 +16,8 @@ LEVEL = 0.1
 """Height, in depths of cut, of a bar of cracks."""
 STRIP, MOST_STRIPS = 25, 4
 """Least length, in depths of cut, of a strip of the groove, and how many strips are drawn at most."""
+TALLEST = 5
+"""Inches, of a strip."""
 ROWS = {"mean_cutting_force": "mean cutting force", "mean_peak_cutting_force": "mean peak of a chip",
         "peak_over_mean": "mean peak over mean", "mean_thrust_force": "mean thrust force",
         "thrust_over_cutting": "thrust over cutting force", "specific_energy": "specific energy",
@@ -134,24 +136,28 @@ def middles(distance, count):
 # ---- groove
 
 def groove_figure(run):
-    """The groove to scale, in strips: rock that is left, and what was broken out below the path."""
+    """The groove to scale, in strips: rock that is left, and what was broken out below the path; None for one that is
+    shorter than the cut is deep."""
     x, height = (MM * column for column in run.table("groove.csv", "x", "height"))
-    if np.count_nonzero(np.isfinite(height)) < 2:
-        return None
     depth = MM * depth_of(run)
-    length = x[-1] - x[0]
+    if np.count_nonzero(np.isfinite(height)) < 2 or not (length := x[-1] - x[0]) > depth:
+        return None
     strips = int(np.clip(length // (STRIP * depth), 1, MOST_STRIPS))
     bottom = min(np.nanmin(height), 0.0) - 0.6 * depth
     top = max(np.nanmax(height), depth) + 0.4 * depth
-    figure, panels = canvas(12, 0.7 + strips * (0.25 + 11 * (top - bottom) / (length / strips)), strips)
+    tall = min(TALLEST, 11 * (top - bottom) / (length / strips))
+    figure, panels = canvas(12, 0.7 + strips * (0.25 + tall), strips)
     for k, axes in enumerate(panels):
         draw_groove(axes, x, height, depth, bottom)
         axes.set(xlim=(x[0] + k * length / strips, x[0] + (k + 1) * length / strips), ylim=(bottom, top),
                  aspect="equal")
         axes.set_yticks([0, depth], ["path", "surface"])
+        axes.axvspan(x[0], MM * run.result("transient"), color=palette.STAGE, alpha=0.5, linewidth=0)
     panels[-1].set_xlabel("mm")
-    panels[0].set_title(f"The groove left behind, to scale. Red: broken out below the tool's path, more than "
-                        f"{quantity(run.result('overbreak'), 'm')} on 10 % of the length", loc="left")
+    overbreak = run.result("overbreak")
+    words = (f", after the transient more than {quantity(overbreak, 'm')} on 10 % of the length"
+             if math.isfinite(overbreak) else "")
+    panels[0].set_title(f"The groove left behind, to scale. Red: broken out below the tool's path{words}", loc="left")
     return figure
 
 

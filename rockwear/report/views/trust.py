@@ -26,10 +26,16 @@ def in_words(run):
     # Of a tool that keeps its shape no piece ever goes.
     goes = f", and {piece} wears away in {number(events)} contact events" if math.isfinite(events) else ""
     enough = f" and {wear_statistics.ENOUGH_EVENTS} events" if goes else ""
-    return (f"Wear is accelerated {quantity(run.parameter('wear_acceleration'), '-')} times. Sampled in "
+    trusted, factor = run.result("trusted_wear_acceleration"), run.parameter("wear_acceleration")
+    longer = ""
+    if trusted < factor:
+        longer = ", and run as much longer"
+    elif not math.isfinite(error):
+        longer = ", and run longer to tell the distribution"
+    return (f"Wear is accelerated {quantity(factor, '-')} times. Sampled in "
             f"{quantity(run.result('simulated_time'), 's')}, its distribution along the tool {known}{goes}. For an "
             f"error of {percent(run.parameter('wear_tolerance'), 1.0)}{enough}, accelerate at most "
-            f"{number(run.result('trusted_wear_acceleration'))} times, and run as much longer.")
+            f"{number(trusted)} times{longer}.")
 
 
 def figure(run):

@@ -44,8 +44,9 @@ def found(name, words):
     grains = getattr(scene, "grain_damping", None)
     tool, surface = scene.tool, getattr(scene.tool.model, "erosion", None)
     return {"made": dict(made), "engines": [engine.name for engine in scene.engines], "rock": scene.rock.count,
-            "grain_rate": grains.rate if grains else 0.0, "step": scene.time_step, "pieces": tool.count, "of_tool": len(tool.bodies.body_of), "bodies": sum(1 for _ in O.bodies),
-            "surface": len(surface.surface) if surface else tool.count, "balances": list(scene.output.balances())}
+            "pieces": tool.count, "of_tool": len(tool.bodies.body_of), "bodies": sum(1 for _ in O.bodies),
+            "surface": len(surface.surface) if surface else tool.count, "balances": list(scene.output.balances()),
+            "grain_rate": grains.rate if grains else 0.0, "step": scene.time_step}
 
 
 cases, checks = sys.argv[-2:]
