@@ -18,8 +18,8 @@ import matplotlib
 
 from calibration import generated
 from calibration.campaigns.runs import Runs, command_line, wait_for
-from calibration.campaigns.steady_cut_cases import AT_DEPTHS, BASE, CASES, EIGHT, FINEST, plan
-from calibration.campaigns.steady_cut_figures import over_depth, price, resolution
+from calibration.campaigns.steady_cut_cases import AT_DEPTHS, BASE, CASES, EIGHT, ENDS_FREE, FINEST, plan
+from calibration.campaigns.steady_cut_figures import grooves, over_depth, price, resolution
 from calibration.campaigns.steady_cut_numbers import BEGIN, LOAD, keep, kept, of_case, runs_of
 from calibration.campaigns.steady_cut_tables import (
     ACCURACY, CHANGED, causes, changes, envelope, lengths_needed, relations, settings, theories)
@@ -94,6 +94,12 @@ def write(folder, others):
         with matplotlib.rc_context(plots.STYLE):
             files.append(folder / "steady_cut_depths.png")
             over_depth(found).savefig(files[-1])
+    if {EIGHT, ENDS_FREE} <= set(measured):
+        of_ends = {"a rock mass": EIGHT, "a block ten depths long, both ends free": ENDS_FREE}
+        with matplotlib.rc_context(plots.STYLE):
+            files.append(folder / "steady_cut_ends.png")
+            grooves({words: next(iter(runs_of(folder / "cut", case).values()))
+                     for words, case in of_ends.items()}).savefig(files[-1])
     generated.record(*files)
     return generated.write_page(folder / "steady_cut.md", lines)
 

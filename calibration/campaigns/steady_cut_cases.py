@@ -3,6 +3,7 @@ from rockwear.kernels.cut_sizes import cut_sizes
 
 SCRIPT, UNIAXIAL = "yade_scripts/steady_cut.py", "yade_scripts/uniaxial.py"
 BASE, FOUR, EIGHT, FINEST = "base", "four discs", "eight discs", "32 discs"
+ENDS_FREE = f"{EIGHT}, ends free"
 LOW = "window 4 depths high"
 """Two thirds of the default."""
 SHARP = "tip 0.2 mm"

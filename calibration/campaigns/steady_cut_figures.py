@@ -2,10 +2,11 @@
 import numpy as np
 
 from calibration.campaigns.steady_cut_cases import AT_DEPTHS, BASE, CUT, EIGHT, FINEST, FOUR, ROCKS, SETTINGS, depth_of
-from calibration.campaigns.steady_cut_numbers import COLUMNS, scaled
+from calibration.campaigns.steady_cut_numbers import COLUMNS, of_run, scaled
 from rockwear.kernels.cutting_envelope import (
     ENERGY_TARGET, OVERBREAK_TARGET, PEAKS_TARGET, SCRATCH_DEPTHS, SCRATCH_ENERGY, SCRATCH_STRENGTH, SCRATCH_THRUST)
 from rockwear.report import plots
+from rockwear.report.views.steady import draw_groove
 
 MOVED = 0.15
 """Part of specific energy and friction work by which a setting may move them."""
@@ -50,6 +51,22 @@ def over_depth(found):
         axes.set_xticks([0.3, 1, 5, 20], ["0.3", "1", "5", "20"])
         axes.minorticks_off()
         axes.legend(fontsize=8)
+    return drawn
+
+
+def grooves(runs):
+    """Figure: what cuts of one depth leave behind, to one scale. runs: {what it is: RunFolder}."""
+    drawn, panels = plots.canvas(8, 2.6 * len(runs), len(runs))
+    left = {words: [plots.MM * column for column in run.table("groove.csv", "x", "height")]
+            for words, run in runs.items()}
+    bottom = min(np.nanmin(height) for _, height in left.values())
+    for axes, (words, run) in zip(panels, runs.items()):
+        depth = plots.MM * run.parameter("depth_of_cut")
+        draw_groove(axes, *left[words], depth, bottom - depth)
+        axes.set(aspect="equal", ylim=(bottom - depth, 1.4 * depth), xlim=(0, max(x[-1] for x, _ in left.values())))
+        axes.set_yticks([0, depth], ["path", "surface"])
+        axes.set_title(f"{words}: {of_run(run)['force'].value:.1f} kN/m", loc="left")
+    panels[-1].set_xlabel("mm")
     return drawn
 
 

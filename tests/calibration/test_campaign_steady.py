@@ -381,3 +381,16 @@ def rows(path, names, *columns):
     """A table of columns."""
     with open(path, "w", encoding="utf-8", newline="") as file:
         csv.writer(file).writerows([[f"{name} [-]" for name in names.split()], *np.column_stack(columns).tolist()])
+
+
+def test_grooves_are_drawn_to_one_scale_with_their_forces(tmp_path):
+    runs = {}
+    for name in ("shallow", "deep"):
+        write_run(tmp_path / name)
+        runs[name] = RunFolder(tmp_path / name)
+    x, height = runs["deep"].table("groove.csv", "x", "height")
+    rows(tmp_path / "deep/groove.csv", "x height", x, height - 4 * DEPTH)
+    one, other = figures.grooves(runs).axes
+    assert one.get_title(loc="left") == f"shallow: {1e-3 * FORCE:.1f} kN/m"
+    assert one.get_ylim() == other.get_ylim() and one.get_ylim()[0] < 1e3 * (height - 4 * DEPTH).min()
+    assert one.get_xlim() == other.get_xlim() == (0, 1e3 * x[-1])
