@@ -169,7 +169,7 @@ def main(words):
         return 2
     done, failed = sum(row.done for row in rows), sum(bool(row.failure) for row in rows)
     print(f"{done} of {len(rows)} rows are done, {failed} failed: {page.write(folder, rows, units, options.results)}")
-    return 0 if done == len(rows) else 1
+    return 0 if done == len(rows) and not failed else 1
 
 
 def _stop(number, frame):

@@ -179,7 +179,7 @@ class Run:
         except RunEnded as end:
             ended, code = str(end), 0 if end.healthy else 1
         except BROKEN as error:
-            ended, code = f"{type(error).__name__}: {error}".splitlines()[0], 1
+            ended, code = _line(error), 1
         if self.stopped_by and not code:
             print(f"stopped by signal {self.stopped_by} at t = {self.scene.time:.6g} s; --resume continues from here")
             return 128 + self.stopped_by
@@ -213,6 +213,10 @@ class Run:
             # Of a disk that was full before it has been said.
             if not code:
                 print(f"error: {error}", file=sys.stderr)
+                # Not a good run, even on a disk too full to say why.
+                with suppress(*BROKEN):
+                    (self.folder / "summary.json").unlink(missing_ok=True)
+                    self._write_summary(_line(error), 1, self.scene.output.warnings())
             return 1
         return code
 
@@ -315,6 +319,11 @@ class Run:
 def resident_memory():
     """Bytes of memory that this process has now."""
     return int(Path("/proc/self/statm").read_text(encoding="ascii").split()[1]) * resource.getpagesize()
+
+
+def _line(error):
+    """What ended a run, in one line."""
+    return f"{type(error).__name__}: {error}".splitlines()[0]
 
 
 def _plain(value):

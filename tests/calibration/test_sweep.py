@@ -339,19 +339,22 @@ while :; do sleep 0.05; done
     assert log.read_text(encoding="utf-8").count("stopped by signal 15") == 1
 
 
+def made_up(folder, given, values):
+    """A row that has finished, in a subfolder of `folder` of its own."""
+    place = folder / f"row {len(list(folder.iterdir()))}"
+    place.mkdir()
+    (place / "report.html").write_text("", encoding="utf-8")
+    (place / "summary.json").write_text(json.dumps({
+        "exit_code": 0, "versions": {"rockwear": __version__},
+        "files": {}, "parameters": values, "wall_time": {"total": 60}, "results": {
+            "mean_cutting_force": {"value": 1e6 * values["depth"], "unit": "N/m"}, "same": {"value": 1.0, "unit": "-"},
+            "name": {"value": "none", "unit": "-"}}}), encoding="utf-8")
+    return sweep.Row(place.name, given, values, 1, place, {})
+
+
 def test_the_page_draws_each_swept_parameter_and_links_the_reports(tmp_path, capsys):
-    rows = []
-    for number, (depth, kind) in enumerate([(1e-3, "sharp"), (2e-3, "sharp"), (1e-3, "worn"), (2e-3, "worn")]):
-        folder = tmp_path / f"row {number}"
-        folder.mkdir()
-        (folder / "report.html").write_text("", encoding="utf-8")
-        values = {"depth": depth, "kind": kind, "kn": 1e9}
-        (folder / "summary.json").write_text(json.dumps({
-            "exit_code": 0, "versions": {"rockwear": __version__},
-            "files": {}, "parameters": values, "wall_time": {"total": 60}, "results": {
-                "mean_cutting_force": {"value": 1e6 * depth, "unit": "N/m"}, "same": {"value": 1.0, "unit": "-"},
-                "name": {"value": "none", "unit": "-"}}}), encoding="utf-8")
-        rows.append(sweep.Row(folder.name, {"depth": "", "kind": ""}, values, 1, folder, {}))
+    rows = [made_up(tmp_path, {"depth": "", "kind": ""}, {"depth": depth, "kind": kind, "kn": 1e9})
+            for depth, kind in [(1e-3, "sharp"), (2e-3, "sharp"), (1e-3, "worn"), (2e-3, "worn")]]
     text = page.write(tmp_path, rows, {"depth": "m", "kind": "", "kn": "N/m"}).read_text(encoding="utf-8")
     assert "4 of 4 rows done" in text and text.count("<img") == 2 and 'href="row%202/report.html"' in text
     assert "<td class=\"number\">2 mm</td>" in text and "2 kN/m" in text and "<th>same" not in text
@@ -359,3 +362,13 @@ def test_the_page_draws_each_swept_parameter_and_links_the_reports(tmp_path, cap
     assert capsys.readouterr().err == "no row has a result nosuch\n"
     for name in ("depth", "kind"):
         assert (tmp_path / f"{name}.png").stat().st_size > 5000
+
+
+def test_a_row_that_failed_is_none_that_is_done(tmp_path, monkeypatch, capsys):
+    """Its worker was lost once its run had ended."""
+    rows = [made_up(tmp_path, {"depth": ""}, {"depth": depth}) for depth in (1e-3, 2e-3)]
+    rows[0].failure = "row 0 was given up"
+    monkeypatch.setattr(sweep, "read_rows", lambda *given: (rows, {"depth": "m"}, tmp_path))
+    monkeypatch.setattr(sweep, "run_all", lambda rows, folder: None)
+    assert sweep.main(["some.table", SCRIPT]) == 1
+    assert "2 of 2 rows are done, 1 failed: " in capsys.readouterr().out

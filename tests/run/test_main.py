@@ -5,7 +5,7 @@ import subprocess
 import pytest
 
 from rockwear.run import checkpoint, lock
-from tests.running import ROOT, run_script, start
+from tests.running import ROOT, arguments, run_script, start
 
 SCRIPTS = ROOT / "tests/run/scripts"
 
@@ -64,6 +64,21 @@ def test_help_shows_the_groups(tmp_path):
     sections = {block.splitlines()[0]: block for block in run.stdout.split("\n\n")}
     assert "--density kg/m3" in sections["oscillator:"] and "(default 1000 kg/m3; ours)" in sections["oscillator:"]
     assert "--out TEXT" in sections["output:"]
+
+
+def test_a_run_without_its_report_is_not_done_until_it_is_resumed(tmp_path):
+    """A file stands where the folder of the figures is to be."""
+    words = arguments(dict(test="tension", width=0.04, height=0.03, radius_min=1e-3, radius_max=1.5e-3, kt=4e9, Rt=1e5,
+                           speed=0.03, out=tmp_path))
+    for name in (lock.FILE, "figures"):
+        (tmp_path / name).touch()
+    run = run_script(ROOT / "yade_scripts/uniaxial.py", *words, out=tmp_path)
+    assert run.code == 1 == run.summary["exit_code"] and run.stderr.splitlines()[-1].startswith("error: ")
+    assert run.summary["ended"].startswith("FileExistsError: ") and "figures" in run.summary["ended"]
+    (tmp_path / "figures").unlink()
+    run = run_script(ROOT / "yade_scripts/uniaxial.py", *words, "--resume", out=tmp_path)
+    assert run.code == 0 == run.summary["exit_code"] and run.summary["ended"].startswith("failed at ")
+    assert (tmp_path / "report.html").exists()
 
 
 def test_a_run_that_nobody_reads_any_more_goes_on_to_its_end(tmp_path):
