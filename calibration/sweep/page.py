@@ -23,7 +23,8 @@ def write(folder, rows, units, asked=()):
     """Write sweep.html and sweep.csv. rows: those of sweep.__main__; units: of the parameters; asked: names of results
     to show. -> path of the page."""
     found = {row.name: run for row in rows if (run := row.run_folder())}
-    swept = [name for name in units if len({str(row.values.get(name)) for row in rows if name in row.given}) > 1]
+    swept = [name for name in units if any(name in row.given for row in rows)
+             and len({str(row.values.get(name)) for row in rows}) > 1]
     results = list(asked) or shown_results(list(found.values()))
     for name in results:
         if found and not any(name in run.summary["results"] for run in found.values()):

@@ -372,3 +372,13 @@ def test_a_row_that_failed_is_none_that_is_done(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(sweep, "run_all", lambda rows, folder: None)
     assert sweep.main(["some.table", SCRIPT]) == 1
     assert "2 of 2 rows are done, 1 failed: " in capsys.readouterr().out
+
+
+def test_a_row_that_leaves_a_parameter_out_is_told_apart_from_those_that_give_it(tmp_path):
+    """By its default, as a value like the others."""
+    rows = [made_up(tmp_path, given, {"depth": depth, "kn": kn})
+            for given, depth, kn in (({"kn": ""}, 1e-3, 2e9), ({}, 2e-3, 1e9))]
+    text = page.write(tmp_path, rows, {"depth": "m", "kn": "N/m"}).read_text(encoding="utf-8")
+    assert "<th>kn" in text and "<th>depth" not in text and (tmp_path / "kn.png").exists()
+    found = list(csv.DictReader((tmp_path / "sweep.csv").read_text(encoding="utf-8").splitlines()))
+    assert [float(row["kn [N/m]"]) for row in found] == [2e9, 1e9]
