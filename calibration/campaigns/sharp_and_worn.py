@@ -18,10 +18,10 @@ from calibration import generated
 from calibration.campaigns import steady_cut_cases as cases, steady_cut_numbers as numbers
 from calibration.campaigns.runs import Runs, command_line, existing, wait_for
 from rockwear.kernels import cutting_theory, steady_record
+from rockwear.kernels.checks import ParameterError, require
 from rockwear.model import rock_file
 from rockwear.report import plots
 from rockwear.report.bodies import tool_loops
-from rockwear.report.folder import RunFolder
 from rockwear.scenes.parameters import OF_ROCK
 
 SHAPES = 3
@@ -129,8 +129,10 @@ def write(folder, tools):
 
 
 def shapes(folder):
-    """[{lost, outline, path, rake, evans}] of the worn tool's stages; writes the outlines."""
-    run, depth, found = RunFolder(folder / "worn"), CUT["depth_of_cut"], []
+    """[{lost, outline, path, rake, evans}] of the worn tool's stages; writes the outlines. Raises ParameterError (DIR)
+    where the run in which it wears has not finished."""
+    run, depth, found = existing({"worn": folder / "worn"}).get("worn"), CUT["depth_of_cut"], []
+    require(run and run.summary["exit_code"] == 0, "DIR", str(folder), 'a folder with the finished run "worn"')
     (folder / "outlines").mkdir(exist_ok=True)
     for number, (lost, shot) in enumerate(stages(run)):
         polygon, path = outline(run, shot), folder / "outlines" / f"tool_{number}.csv"
@@ -153,10 +155,16 @@ def start(folder, **where):
 
 
 def main(folder, read=False, **where):
-    """Run what is missing unless they are only read, and write all of what is there. -> exit code."""
+    """Run what is missing unless they are only read, and write all of what is there. -> exit code: 2 where they are
+    read and that of the tool that wears has not finished, reported in one line."""
     folder.mkdir(parents=True, exist_ok=True)
     failed, tools = 0 if read else start(folder, **where), []
-    for number, tool in enumerate(shapes(folder) if not failed else ()):
+    try:
+        worn = shapes(folder) if not failed else []
+    except ParameterError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 2
+    for number, tool in enumerate(worn):
         places = {seed: folder / f"tool_{number}-{seed}" for seed in SEEDS}
         each = {seed: numbers.of_run(run) for seed, run in existing(places).items()}
         if each:

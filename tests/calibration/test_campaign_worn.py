@@ -1,5 +1,6 @@
 """make campaign-worn in miniature: a tool wears, its outlines cut fresh rock, runs and tables are kept."""
 import csv
+import json
 
 import numpy as np
 import pytest
@@ -60,6 +61,17 @@ def test_finished_runs_stay_and_another_shape_is_cut_again(campaign):
     assert finished(cut, {"outline": outline})
     outline.write_text(outline.read_text(encoding="utf-8").replace("\n", "\n ", 2), encoding="utf-8")
     assert not finished(cut, {"outline": outline})
+
+
+@pytest.mark.parametrize("summary", [None, {"exit_code": 1}])
+def test_without_the_run_that_wears_nothing_is_written(tmp_path, capsys, summary):
+    if summary:
+        (tmp_path / "worn").mkdir()
+        (tmp_path / "worn/summary.json").write_text(json.dumps(summary), encoding="utf-8")
+    assert sharp_and_worn.main(tmp_path, read=True) == 2
+    said = capsys.readouterr()
+    assert said.err == f'error: DIR = {tmp_path}: must be a folder with the finished run "worn"\n' and not said.out
+    assert [path.name for path in tmp_path.iterdir()] == (["worn"] if summary else [])
 
 
 def test_differences_are_taken_in_the_same_packing():
