@@ -85,7 +85,8 @@ def _row(row, line, brinell):
 
 
 def tests_of(rows, *, mu, brinell=BRINELL):
-    """LaboratoryTest of rows of `read`. Raises ParameterError for what is missing, not positive, or outside a table."""
+    """LaboratoryTest of rows of `read`. Raises ParameterError for what is missing, not positive, or outside a table,
+    and for pressures at which steel would flow."""
     columns = [_measured(row, mu, brinell) for row in rows]
     return LaboratoryTest(**{name: np.array([column[name] for column in columns]) for name in columns[0]})
 
@@ -110,6 +111,8 @@ def _measured(row, mu, brinell):
         friction_error = np.hypot(of["friction"], of["area"]) if not of["pressure"] else np.hypot.reduce(
             [of["friction"], of["force"], of["pressure"]])
     hardness, hardness_error = _hardness(row, of, brinell)
+    require(pressure < hardness, f"{'pressure' if 'pressure' in row else 'force / area'} in line {row['line']}",
+            pressure, f"less than the hardness, {hardness:.4g}, where steel would flow", "Pa")
     return {"pressure": pressure, "friction_stress": friction, "distance": row["distance"], "depth": row["depth"],
             "hardness": hardness, "rate_error": np.hypot(of["depth"], of["distance"]), "pressure_error": pressure_error,
             "friction_error": friction_error, "hardness_error": hardness_error}
