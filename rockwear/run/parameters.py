@@ -173,11 +173,15 @@ def read_table(path):
     try:
         written = Path(path).read_text(encoding="utf-8")
         # YADE's reader drops the last character of every line, also where it is no line break, and cells beyond the
-        # header.
+        # header. It takes a byte order mark for a part of the first name, and the last of two columns of one name.
+        require(not written.startswith("\ufeff"), "table", str(path), "without a byte order mark")
         require(written.endswith("\n"), "table", str(path), "closed by a line break")
-        widths = {len(cells) for line in written.split("\n") if (cells := line.partition("#")[0].split())}
-        require(len(widths) == 1, "table", str(path), "a table of yade-batch: a header, then a cell a column in every "
-                "row")
+        lines = [cells for line in written.split("\n") if (cells := line.partition("#")[0].split())]
+        require(len(set(map(len, lines))) == 1, "table", str(path),
+                "a table of yade-batch: a header, then a cell a column in every row")
+        names = [name.removesuffix("!") for name in lines[0]]
+        twice = next((name for name in names if names.count(name) > 1), None)
+        require(twice is None, "table", f"{path}, column {twice}", "there once")
         return TableParamReader(str(path)).paramDict()
     except OSError as error:
         raise ParameterError("table", str(path), f"a file that can be read ({error.strerror})") from None

@@ -171,7 +171,8 @@ def test_a_sweep_runs_on_the_worker_of_a_scheduler(cluster, tmp_path):
      "(line 3)"),
     ("description seed", "a 1\na 2", "description = a: must be different from that of line 3"),
     ("description seed", "a 1 2 3", "bad.table: must be a table of yade-batch: a header, then a cell a column"),
-    ("description seed", "a", "bad.table: must be a table of yade-batch: a header, then a cell a column")])
+    ("description seed", "a", "bad.table: must be a table of yade-batch: a header, then a cell a column"),
+    ("seed kn speed seed", "1 2e9 1 3", "bad.table, column seed: must be there once")])
 def test_bad_tables_are_refused_before_a_row_runs(tmp_path, capsys, header, row, line):
     assert sweep.main([table(tmp_path / "bad.table", header, row), SCRIPT, "--out", str(tmp_path / "out")]) == 2
     said = capsys.readouterr().err

@@ -50,6 +50,18 @@ def test_a_row_of_a_table_may_leave_a_column_out(tmp_path):
         assert error_of(run_script(SCRIPTS / "steps.py", cwd=tmp_path, env=environment)).endswith(f"change {cause}")
 
 
+@pytest.mark.parametrize("text, rule", [
+    ("k density k!\n1 1e3 2\n", "table.txt, column k: must be there once"),
+    ("\ufeffk density\n1 1e3\n", "table.txt: must be without a byte order mark"),
+    ("\ufeff# springs\nk density\n1 1e3\n", "table.txt: must be without a byte order mark")])
+def test_a_table_that_yade_reads_in_another_way_is_refused(text, rule, tmp_path):
+    table = tmp_path / "table.txt"
+    table.write_text(text, encoding="utf-8")
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "YADE_BATCH": f"{table}:{text.count(chr(10))}"}
+    error = error_of(run_script(SCRIPTS / "steps.py", cwd=tmp_path, env=environment))
+    assert error == f"error: table = {tmp_path}/{rule}"
+
+
 def test_a_checkpoint_of_another_version_is_refused(tmp_path):
     checkpoint.save(tmp_path / "out/checkpoint", identity={"rockwear version": "0.1.0"}, state={},
                     write_scenes=lambda directory: None)
