@@ -159,7 +159,7 @@ def plane_rock(word):
     path = rock_file.find(word)
     rock = rock_file.read(path, OF_ROCK)
     require("plane" in rock.parts, "rock", word, "a rock with a part for the plane")
-    return json.loads(Path(path).read_text(encoding="utf-8")), rock
+    return json.loads(Path(path).read_text(encoding="utf-8-sig")), rock
 
 
 def folders(values):

@@ -94,7 +94,7 @@ def read(path, declared):
     Raises ParameterError (rock), with the place in the file.
     """
     try:
-        data = json.loads(Path(path).read_text(encoding="utf-8"), object_pairs_hook=_object)
+        data = json.loads(Path(path).read_text(encoding="utf-8-sig"), object_pairs_hook=_object)
     except (OSError, ValueError, RecursionError) as error:
         raise ParameterError("rock", str(path), f"a readable JSON file ({str(error).splitlines()[0]})") from None
     try:

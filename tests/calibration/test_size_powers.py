@@ -116,6 +116,12 @@ def test_what_cannot_be_used_is_refused_in_one_line(run, tmp_path, words, said):
     assert not (tmp_path / "out").exists()
 
 
+def test_a_byte_order_mark_is_none_of_the_rock(tmp_path):
+    text = rock_file.find("medium_sandstone").read_text(encoding="utf-8")
+    (tmp_path / "rock.json").write_text(text, encoding="utf-8-sig")
+    assert size_powers.rock_of({"rock": str(tmp_path / "rock.json")}) == json.loads(text)
+
+
 def test_runs_are_of_the_same_packing_at_every_radius(tmp_path):
     started = {}
 

@@ -241,6 +241,11 @@ def test_a_name_that_is_nearly_one_of_the_library():
         read(PLANE, "--rock", "m_sandston")
 
 
+def test_a_byte_order_mark_is_none_of_the_file(tmp_path):
+    path = written(tmp_path, "\ufeff" + json.dumps(ROCK))
+    assert read(PLANE, "--rock", path)["kn"] == 18e9
+
+
 def test_bytes_that_are_no_text(tmp_path):
     path = tmp_path / "bad.json"
     path.write_bytes(b"\xff\xfe\x00")
