@@ -133,15 +133,17 @@ def tool(v):
     outline = parts.outline(v)
     parts.check_height(v, outline, "depth_of_cut", v.depth_of_cut)
     if v.tool == "triangles":
-        check_facet(v, 2 * area(outline) + perimeter(outline) * v.breadth)
+        with parts.as_outline(v, outline):
+            check_facet(v, 2 * area(outline) + perimeter(outline) * v.breadth)
         corners, facets = prism(outline, v.breadth, v.facet)
         model = FacetTool(vertices=corners, facets=facets, density=v.tool_density)
         return FacetAssembly(
             model=model, outline=outline, work_fraction=v.work_fraction, reshape=v.reshape, **common,
             thermal_body=lambda: FacetBody(model, fill=parts.thermal_fill(v, outline), breadth=v.breadth))
     require(v.tool_radius < v.radius, "tool_radius", v.tool_radius, f"less than that of the rock, {v.radius:g}", "m")
-    model = LayeredTool(vertices=outline, radius=v.tool_radius, breadth=v.breadth, seed=v.seed, removal=v.removal,
-                        density=v.tool_density)
+    with parts.as_outline(v, outline):
+        model = LayeredTool(vertices=outline, radius=v.tool_radius, breadth=v.breadth, seed=v.seed, removal=v.removal,
+                            density=v.tool_density)
     return ParticleAssembly(model=model, outline=outline, **common)
 
 

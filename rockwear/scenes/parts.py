@@ -1,5 +1,6 @@
 """Parts of a cut, made from a scene's parameters."""
 import math
+from contextlib import contextmanager
 
 import numpy as np
 
@@ -20,6 +21,8 @@ from rockwear.scenes.tool_assembly import FacetAssembly, ParticleAssembly
 HARDNESS = {"MET71": MET71, "MET91": MET91}
 NEVER_TURNS = 1e9
 """Moment of inertia of particles that do not turn, over their own."""
+SIZES = "tool_radius_min", "tool_radius_max", "tool_radius", "segment", "facet"
+"""Parameters, m, of what an outline is filled or covered with."""
 
 
 def bond_law(v):
@@ -71,6 +74,20 @@ def check_height(v, vertices, name, depth):
     """Raise ParameterError for an outline (k, 2) m no higher than the depth (m) of its cut, parameter `name`."""
     height = float(np.ptp(vertices[:, 1]))
     check_extent(v, "tooth_height", height, height > depth, f"more than {name} = {depth:g} m")
+
+
+@contextmanager
+def as_outline(v, vertices):
+    """A context in which a ParameterError of SIZES is one of the outline (k, 2) m where a file gives it: not in m it
+    fits none of them."""
+    try:
+        yield
+    except ParameterError as error:
+        if not v.outline or error.name not in SIZES:
+            raise
+        width, height = np.ptp(vertices, axis=0)
+        raise ParameterError("outline", f"{v.outline}, {width:g} m x {height:g} m",
+                             f"in m, and such that {error.name} = {error.value:g} m is {error.rule}") from None
 
 
 def hardness(v, wears=True):
@@ -157,13 +174,13 @@ def plane_tool(v, vertices):
     """The tool assembly of an outline (k, 2) m in the plane, of particles or segments."""
     common = dict(outline=vertices, contact_law=contact_law(v), wear=tool_wear(v), units=PLANE,
                   sampling_period=v.sampling_period)
-    if v.tool == "segments":
-        model = FacetTool.of_outline(vertices, segment=v.segment, density=v.tool_density)
-        return FacetAssembly(model=model, work_fraction=v.work_fraction, reshape=v.reshape,
-                             thermal_body=lambda: FacetBody(model, fill=thermal_fill(v, vertices)), **common)
-    model = Tool(vertices=vertices, radius_min=v.tool_radius_min, radius_max=v.tool_radius_max, seed=v.seed,
-                 removal=v.removal,
-                 density=v.tool_density)
+    with as_outline(v, vertices):
+        if v.tool == "segments":
+            model = FacetTool.of_outline(vertices, segment=v.segment, density=v.tool_density)
+            return FacetAssembly(model=model, work_fraction=v.work_fraction, reshape=v.reshape,
+                                 thermal_body=lambda: FacetBody(model, fill=thermal_fill(v, vertices)), **common)
+        model = Tool(vertices=vertices, radius_min=v.tool_radius_min, radius_max=v.tool_radius_max, seed=v.seed,
+                     removal=v.removal, density=v.tool_density)
     return ParticleAssembly(model=model, **common)
 
 

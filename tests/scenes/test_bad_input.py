@@ -213,6 +213,18 @@ def test_bad_outline(tmp_path):
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.parametrize("script, size, words", [
+    ("steady_cut", "tool_radius_min = 0.0002 m is large enough for at most 5000000 particles", []),
+    ("steady_cut", "segment = 0.001 m is at least 0.00262: the tool would have more", ["--tool", "segments"]),
+    ("cutting_3d_wear", "tool_radius = 0.00225 m is large enough for at most", []),
+    ("cutting_3d_triangles", "facet = 0.02 m is at least 0.168", [])])
+def test_an_outline_in_other_units_is_named_and_not_what_it_does_not_fit(script, size, words, tmp_path):
+    (tmp_path / "mm.csv").write_text("0,0\n0,20\n-8,20\n-8,5\n", encoding="utf-8")
+    run = run_script(ROOT / f"yade_scripts/{script}.py", "--outline", "mm.csv", *words, cwd=tmp_path)
+    assert_refused(run.code, run.stderr, f"outline = mm.csv, 8 m x 20 m: must be in m, and such that {size}")
+    assert os.listdir(tmp_path) == ["mm.csv"]
+
+
 def test_a_run_replaces_no_file_of_another_origin_and_none_that_it_reads(tmp_path):
     thesis, file = tmp_path / "work/figures/thesis.png", tmp_path / "out/tooth.csv"
     for path, text in ((thesis, "mine"), (file, "0,0\n0,0.03\n-0.02,0.03\n-0.02,0.005\n")):
