@@ -24,9 +24,9 @@ import numpy as np
 
 from calibration import generated
 from calibration.command import Parser
-from calibration.laboratory.strength_table import cells
 from rockwear.kernels.archard import BRINELL, KELVIN, MET71, MET91
 from rockwear.kernels.checks import ParameterError, finite, positive, require
+from rockwear.kernels.files import read_cells
 from rockwear.kernels.wear_fitting import LaboratoryTest
 from rockwear.kernels.wear_laws import WEAR_LAWS, PowerLaw, SumOfModes
 from rockwear.report import plots
@@ -45,7 +45,7 @@ LINEAR = "pressure", "dissipation"
 def read(file, brinell=BRINELL):
     """[{name: SI value}] of a CSV file's rows; errors as "name error", and the row's "line". Raises ParameterError with
     column and line."""
-    found = cells(file, "file")
+    found = read_cells(file, "file")
     require(len(found) > 1, "file", str(file), "a CSV file with a header and at least one row")
     (_, heads), *rows = found
     names = [_name_and_unit(head)[0] for head in heads]

@@ -1,8 +1,8 @@
 """Tables of a laboratory's confined strengths, the one format that envelopes and fits read."""
-import csv
 import re
 
 from rockwear.kernels.checks import ParameterError, finite, require
+from rockwear.kernels.files import read_cells
 from rockwear.kernels.parameter import zero_or
 from rockwear.model.rock_file import PROPERTIES
 
@@ -17,27 +17,13 @@ CONFINEMENT = zero_or(LEAST, 1e9)
 """A rule: Pa, the confinement of a test."""
 
 
-def cells(path, parameter):
-    """[(number of the line, [cell])] of a CSV file, the header first and no empty row; between the cells are commas,
-    semicolons or tabs. Raises ParameterError, of the name `parameter`."""
-    try:
-        with open(path, newline="", encoding="utf-8-sig") as file:
-            lines = file.read().splitlines()
-        header = next(filter(str.strip, lines), "")
-        between = next((mark for mark in "\t;" if mark in header), ",")
-        rows = csv.reader(lines, delimiter=between, skipinitialspace=True)
-        return [(line, row) for line, row in enumerate(rows, 1) if any(cell.strip() for cell in row)]
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise ParameterError(parameter, str(path), f"a readable CSV file ({error})") from None
-
-
 def read(path, parameter):
     """[(sigma3, sigma1)], Pa, row by row, of a CSV file with the columns sigma3 and sigma1, between commas, semicolons
     or tabs, in Pa or in the unit of UNITS that the header names: sigma3_MPa, sigma1 (kPa), sigma1_peak_GPa.
 
     Further columns are allowed. Raises ParameterError, of the name `parameter`.
     """
-    rows = cells(path, parameter)
+    rows = read_cells(path, parameter)
     heads = [head.strip() for head in rows[0][1]] if rows else []
     columns = []
     for number in (3, 1):

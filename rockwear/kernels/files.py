@@ -1,4 +1,5 @@
-"""Files that are whole or not there, and whose errors name them."""
+"""Files that are whole or not there, and whose errors name them; tables as other programs write them."""
+import csv
 import errno
 import io
 import os
@@ -6,6 +7,8 @@ import shutil
 from contextlib import contextmanager
 
 import numpy as np
+
+from rockwear.kernels.checks import ParameterError
 
 
 @contextmanager
@@ -48,3 +51,17 @@ def write_arrays(path, arrays):
     np.savez_compressed(made, **arrays)
     with replacing(path) as file:
         file.write(made.getbuffer())
+
+
+def read_cells(path, parameter, comment=None):
+    """[(number of the line, [cell])] of a CSV file, no row empty and none that begins with `comment`; between the cells
+    are commas, semicolons or tabs, as in the first row. Raises ParameterError, of the name `parameter`."""
+    try:
+        with open(path, newline="", encoding="utf-8-sig") as file:
+            lines = [(number, line) for number, line in enumerate(file.read().splitlines(), 1)
+                     if line.strip() and not (comment and line.lstrip().startswith(comment))]
+        between = next((mark for mark in "\t;" if lines and mark in lines[0][1]), ",")
+        rows = csv.reader((line for _, line in lines), delimiter=between, skipinitialspace=True)
+        return [(number, row) for (number, _), row in zip(lines, rows) if any(cell.strip() for cell in row)]
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        raise ParameterError(parameter, str(path), f"a readable CSV file ({error})") from None

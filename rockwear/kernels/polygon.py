@@ -3,7 +3,6 @@
 A polygon is an array (k, 2) of vertices in m, in order, the last connected with the first. It is simple: no two edges
 meet except neighbours at their common vertex.
 """
-import csv
 import math
 import re
 
@@ -11,6 +10,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from rockwear.kernels.checks import ParameterError, finite, not_negative, positive, require
+from rockwear.kernels.files import read_cells
 
 ARC_CHORD_ERROR = 1e-3  # sagitta of the chords that replace an arc, as a fraction of its radius
 CORNER = math.radians(10)  # a vertex at which the direction changes by more is a corner
@@ -83,9 +83,9 @@ def check_polygon(polygon, name="polygon"):
     try:
         p = np.array(polygon, dtype=float)
     except (TypeError, ValueError):
-        raise ParameterError(name, "(not numbers)", "a list of x, y vertices", "m") from None
-    require(p.ndim == 2 and p.shape[1:] == (2,), name, f"array of shape {p.shape}", "a list of x, y vertices", "m")
-    require(np.isfinite(p).all(), name, f"{len(p)} vertices", "finite", "m")
+        raise ParameterError(name, "(not numbers)", "a list of x, y vertices") from None
+    require(p.ndim == 2 and p.shape[1:] == (2,), name, f"array of shape {p.shape}", "a list of x, y vertices")
+    require(np.isfinite(p).all(), name, f"{len(p)} vertices", "finite")
     if len(p) > 1 and (p[0] == p[-1]).all():
         p = p[:-1]
     require(len(p) >= 3, name, f"{len(p)} vertices", "at least 3 vertices")
@@ -242,18 +242,13 @@ def tooth(*, height, width, rake, clearance, tip_radius, wear_flat=0.0, flat_ang
 def read_outline(path):
     """Polygon (k, 2) in m from a CSV file of x, y rows, counter-clockwise whatever the file's order.
 
-    One header line is allowed, of words without numbers and of no other unit than m; blank lines and lines that begin
-    with # are skipped. Raises ParameterError (outline) for a file that cannot be read, a row that is not two numbers,
-    more than MAX_VERTICES, and as check_polygon.
+    Between x and y is a comma, a semicolon or a tab, and numbers have points. One header line is allowed, of words
+    without numbers and of no other unit than m; blank lines and lines that begin with # are skipped. Raises
+    ParameterError (outline) for a file that cannot be read, a row that is not two numbers, more than MAX_VERTICES, and
+    as check_polygon.
     """
-    try:
-        with open(path, newline="", encoding="utf-8-sig") as stream:
-            rows = [(n, row) for n, row in enumerate(csv.reader(stream), 1)
-                    if any(cell.strip() for cell in row) and not row[0].lstrip().startswith("#")]
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise ParameterError("outline", path, f"a readable CSV file ({error})") from None
     vertices = []
-    for place, (line, row) in enumerate(rows):
+    for place, (line, row) in enumerate(read_cells(path, "outline", comment="#")):
         try:
             x, y = map(float, row)
         except ValueError:
@@ -266,7 +261,7 @@ def read_outline(path):
     try:
         return check_polygon(np.reshape(vertices, (-1, 2)), "outline")
     except ParameterError as error:
-        raise ParameterError("outline", f"{path}, {error.value}", error.rule, error.unit) from None
+        raise ParameterError("outline", f"{path}, {error.value}", error.rule) from None
 
 
 def _check_header(path, row):

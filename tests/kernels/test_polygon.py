@@ -192,7 +192,8 @@ def test_the_tip_of_a_worn_tooth_is_ahead_of_its_flat():
 
 
 @pytest.mark.parametrize("text", ["x,y\n0,0\n0,2\n2,2\n2,0\n", "0,0\n2,0\n2,2\n0,2\n0,0\n",
-                                  "# a square\n\n x [m], y [m]\n0, 0\n2, 0\n2, 2\n\n0, 2\n"])
+                                  "# a square\n\n x [m], y [m]\n0, 0\n2, 0\n2, 2\n\n0, 2\n",
+                                  "\ufeffx;y\n0;0\n2;0\n2;2\n0;2\n", "# x; y\n0\t0\n2.0\t0\n# a corner\n2\t2\n0\t2\n"])
 def test_read_outline(tmp_path, text):
     path = tmp_path / "tool.csv"
     path.write_text(text, encoding="utf-8")
@@ -203,7 +204,10 @@ def test_read_outline(tmp_path, text):
 @pytest.mark.parametrize("text, rule", [
     ("", "at least 3"), ("x,y\n0,0\n1,0\n", "at least 3"), ("0,0\n1,0\n0,a\n", "line 3"),
     ("0,0\n1,0,0\n0,1\n", "line 2"), ("0.0l,0\n0,2\n2,2\n2,0\n", "line 1"), ("x_mm,y_mm\n0,0\n2,0\n2,2\n", "in m"),
-    ("0,0\n1,nan\n0,1\n", "finite"), ("0,0\n1,1\n1,0\n0,1\n", "cross"), ("0,0\n1,0\n1,0\n0,1\n", "repeated"),
+    ("0,0\n1,nan\n0,1\n", "3 vertices: must be finite"), ("0,0\n1,1\n1,0\n0,1\n", "cross"),
+    ("0,0\n1,0\n1,0\n0,1\n", "repeated"),
+    ("0;0\n2;0\n2,5;2\n0;2\n", "two numbers a row, unlike line 3"), ("0\t0\n2,5\t0\n2\t2\n", "unlike line 2"),
+    ("0,0\n2,5,0\n2,2\n", "unlike line 2"), ("0;0\n2,0\n2;2\n", "unlike line 2"), ("x [m];y [mm]\n0;0\n", "in m"),
     ("0,0\n1,0\n2,0\n", "cross"), ("0,0\n2,0\n2,2\n1,0\n0,2\n", "meet"), ("0,0\n2,0\n1,0\n1,1\n", "meet"),
 ])
 def test_bad_outlines(tmp_path, text, rule):
