@@ -155,7 +155,7 @@ def groove_figure(run):
         axes.axvspan(x[0], MM * run.result("transient"), color=palette.STAGE, alpha=0.5, linewidth=0)
     panels[-1].set_xlabel("mm")
     overbreak = run.result("overbreak")
-    words = (f", after the transient more than {quantity(overbreak, 'm')} on 10 % of the length"
+    words = (f", after the transient (pale) more than {quantity(overbreak, 'm')} on 10 % of the length"
              if math.isfinite(overbreak) else "")
     panels[0].set_title(f"The groove left behind, to scale. Red: broken out below the tool's path{words}", loc="left")
     return figure
