@@ -82,10 +82,9 @@ ROCKS = {
         "fracture energy 30": dict(bond_fracture_energy=30.0),
         "fracture energy 5": dict(bond_fracture_energy=5.0)}.items()}}
 """Rocks that are cut as the base is, at other depths of cut too: finer discs make another rock."""
-HALVED, STRONGER, BENTHEIM, MEDIUM, PADOVA, NO_GRAINS = (f"{EIGHT}, {name}" for name in (
-    "strengths halved", "strengths times 1.4", "bentheim", "medium_sandstone", "p_sandstone", "no grains"))
-WIDER = f"{EIGHT}, bonding gap 0.075 mm"
-"""Bonds over gaps up to a quarter of a mean radius, not a twelfth."""
+HALVED, STRONGER, BENTHEIM, MEDIUM, PADOVA, NO_GRAINS, WIDER = (f"{EIGHT}, {name}" for name in (
+    "strengths halved", "strengths times 1.4", "bentheim", "medium_sandstone", "p_sandstone", "no grains",
+    "bonding gap 0.075 mm"))
 THAT_BREAK = tuple(case for case in ROCKS if "times as strong" in case)
 """Larger grains than those of the base, which break."""
 UNTESTED = SCRATCH, DEEPER

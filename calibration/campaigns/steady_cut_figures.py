@@ -63,8 +63,7 @@ def grooves(runs):
     for axes, (words, run) in zip(panels, runs.items()):
         depth = plots.MM * run.parameter("depth_of_cut")
         draw_groove(axes, *left[words], depth, bottom - depth)
-        axes.set(aspect="equal", ylim=(bottom - depth, 1.4 * depth), xlim=(0, max(x[-1] for x, _ in left.values())))
-        axes.set_yticks([0, depth], ["path", "surface"])
+        axes.set(ylim=(bottom - depth, 1.4 * depth), xlim=(0, max(x[-1] for x, _ in left.values())))
         axes.set_title(f"{words}: {of_run(run)['force'].value:.1f} kN/m", loc="left")
     panels[-1].set_xlabel("mm")
     return drawn

@@ -149,9 +149,7 @@ def groove_figure(run):
     figure, panels = canvas(12, 0.7 + strips * (0.25 + tall), strips)
     for k, axes in enumerate(panels):
         draw_groove(axes, x, height, depth, bottom)
-        axes.set(xlim=(x[0] + k * length / strips, x[0] + (k + 1) * length / strips), ylim=(bottom, top),
-                 aspect="equal")
-        axes.set_yticks([0, depth], ["path", "surface"])
+        axes.set(xlim=(x[0] + k * length / strips, x[0] + (k + 1) * length / strips), ylim=(bottom, top))
         axes.axvspan(x[0], MM * run.result("transient"), color=palette.STAGE, alpha=0.5, linewidth=0)
     panels[-1].set_xlabel("mm")
     overbreak = run.result("overbreak")
@@ -162,13 +160,15 @@ def groove_figure(run):
 
 
 def draw_groove(axes, x, height, depth, bottom):
-    """Rock below the profile, rock broken out below the path, and both levels, mm."""
+    """Rock below the profile, rock broken out below the path, and both levels, mm, to scale."""
     axes.fill_between(x, height, depth, color=palette.TOOL_NEW, linewidth=0)
     axes.fill_between(x, np.minimum(height, 0), 0, color=palette.REMOVED_EDGE, linewidth=0)
     axes.fill_between(x, bottom, height, color=palette.ROCK, linewidth=0)
     axes.plot(x, height, color=palette.ROCK_EDGE, linewidth=0.8)
     axes.axhline(0, color=palette.PATH, linewidth=0.8)
     axes.axhline(depth, color=palette.GUIDE, linewidth=0.8, linestyle="--")
+    axes.set_aspect("equal")
+    axes.set_yticks([0, depth], ["path", "surface"])
 
 
 # ---- chips and cracks
