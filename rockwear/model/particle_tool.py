@@ -42,9 +42,8 @@ class ParticleTool:
 
     vertices: (k, 2) m, its outline; positions: (n, 2 or 3) m; radii: (n,) m; area: m2 of the outline, in space m3 of
     the volume; volumes: (n,) m3, the part that each particle stands for; density: kg/m3; fixed: (n,) bool, particles
-    that the shank holds; surface: (n,) bool, those open to wear at first; pairs: (m, 2), neighbours that cover one
-    another; removal
-    and thickness: of kernels.erosion.
+    that the shank holds: no surface at first, they wear once those before them are gone; surface: (n,) bool, those open
+    to wear at first; pairs: (m, 2), neighbours that cover one another; removal and thickness: of kernels.erosion.
     """
 
     def __init__(self, *, vertices, positions, radii, area, volumes, density, fixed, surface, pairs, removal,
@@ -57,8 +56,7 @@ class ParticleTool:
 
     def foremost(self, below):
         """Largest x reached by particles with any part below the height `below` (both m, in the tool's own frame), as
-        long
-        as they are not worn away; -inf for none."""
+        long as they are not worn away; -inf for none."""
         low = (self.positions[:, 1] - self.radii < below) & self.erosion.alive
         return float((self.positions[low, 0] + self.radii[low]).max(initial=-np.inf))
 
@@ -75,8 +73,7 @@ def fill(vertices, *, radius_min, radius_max, seed):
 
 def fitted_conductance(*, radius_min, radius_max, seed, conductivity):
     """W/K, one conductance for every pair of `neighbours`, fitted on a square of the same packing as `fill` has: the
-    outline
-    itself may be any shape. conductivity: W/m K."""
+    outline itself may be any shape. conductivity: W/m K."""
     def make():
         side = 50 * radius_max
         square = pack(box=(side, side), radius_min=radius_min, radius_max=radius_max, seed=seed)
@@ -94,9 +91,9 @@ class Tool(ParticleTool):
     radius_min, radius_max: m; removal: "volume", "depth" or "none" (kernels.erosion); density: kg/m3 of the outline's
     area, which particles carry through their share of it. The shank fixes particles at the top and the back (or at
     the "top" alone): they are no surface. `cells` (kernels.voronoi.Cells) are the parts of the outline. Every other
-    particle whose Voronoi cell reaches the outline is a surface particle, and a
-    particle that goes uncovers those whose cells have a face with its own: by their gaps some across a pore would
-    stay out of contact, and rock would come to lie in them.
+    particle whose Voronoi cell reaches the outline is a surface particle, and a particle that goes uncovers those whose
+    cells have a face with its own: by their gaps some across a pore would stay out of contact, and rock would come to
+    lie in them.
     """
 
     def __init__(self, *, vertices, radius_min, radius_max, seed, removal, density, shank="top and back"):
