@@ -175,7 +175,10 @@ class Heat(Engine):
 
     def _take_out(self, worn, loose=()):
         network, temperature = self.network, self.network.temperature[self.n:]
-        after = receded(temperature=temperature, capacity=network.capacity[self.n:], adjacent=self.below, leaving=worn,
+        capacity = network.capacity[self.n:].copy()
+        # What falls off takes no heat of what is worn.
+        capacity[list(loose)] = 0.0
+        after = receded(temperature=temperature, capacity=capacity, adjacent=self.below, leaving=worn,
                         share=self.kept_share)
         network.add_heat(network.capacity * np.concatenate([np.zeros(self.n), after - temperature]))
         network.remove(self.n + np.array([*worn, *loose], int))

@@ -91,7 +91,7 @@ class Wear(WearEngine):
 
     @property
     def limit(self):
-        return self.erosion.volumes
+        return self.erosion.limit
 
     def act(self):
         slid = self.take_slid()

@@ -230,7 +230,8 @@ def _squared_distances(points, triangles):
 
 
 def foremost(vertices, facets, below):
-    """Largest x (m) of what the facets have below the height y = `below` (m) or at it, -inf for nothing below it."""
+    """Largest x (m) of what the facets have below the height y = `below` (m) and where they come up to it, -inf for
+    nothing below it."""
     x, y = vertices[:, 0], vertices[:, 1]
     low = y < below
     # Of a closed boundary each edge is there in both senses, in one of which it rises.

@@ -8,6 +8,8 @@ from rockwear.kernels.steady_record import UNKNOWN, Measured, integral, mean, sa
 
 EXCEEDED = 0.1
 """Part of the groove's length on which it is deeper than the overbreak."""
+ROUND_OFF = 1e-9
+"""Part of a chip by which a groove may be too short for it."""
 
 
 def groove_profile(positions, radii, of_mass, x_edges):
@@ -79,7 +81,9 @@ def groove_results(*, x, height, chip):
 
 
 def craters(x, depth, chip):
-    """(k,) m, largest depth (b,) m in each whole stretch of one chip (m) along x (b,) m."""
+    """(k,) m, largest depth (b,) m in each whole stretch of one chip (m) along x (b,) m, the middles of bins."""
+    if len(x) < 2:
+        return np.zeros(0)
     stretch = np.floor((x - x[0]) / chip).astype(int)
-    whole = int((x[-1] - x[0]) / chip)
+    whole = int((x[-1] - x[0] + np.diff(x).min()) / chip + ROUND_OFF)
     return np.array([depth[stretch == k].max() for k in range(whole) if np.any(stretch == k)])

@@ -3,6 +3,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.optimize import nnls
+from scipy.special import stdtrit
 
 from rockwear.kernels.checks import not_negative, positive, require
 
@@ -62,11 +63,12 @@ def misfit(model, test, error, parameters):
 
 def _factor(chi2, freedom, known):
     """Factor on the variances of a fit with this sum of squares: at least 1 where errors are known, else what the tests
-    scatter; nan where they do not."""
+    scatter; nan where they do not. Few tests do not know their scatter well: standard errors by it are larger by
+    Student's t, so that k is within two of them in 95 % of the cases."""
     scatter = chi2 / freedom if freedom else 0.0
     if known:
         return max(scatter, 1.0)
-    return scatter if scatter > ROUND_OFF**2 else np.nan
+    return scatter * (stdtrit(freedom, 0.975) / stdtrit(np.inf, 0.975))**2 if scatter > ROUND_OFF**2 else np.nan
 
 
 def _check_range(test, *arrays):

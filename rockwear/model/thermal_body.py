@@ -137,8 +137,9 @@ class FacetBody(ThermalBody):
     layers, as deep as its particles are wide on average.
 
     The node of a facet is the living node nearest to its middle. A node dies when the receding surface has passed its
-    centre (of one that lies outside of the new tool's facets, when it has gone on from there). Its free surface is that
-    of the facets which belong to it and are not fixed to the shank.
+    centre (of one that lies outside of the new tool's facets, when it has gone on from there), the last one never: it
+    stands for what is left of the tool. Its free surface is that of the facets which belong to it and are not fixed to
+    the shank.
     """
 
     def __init__(self, tool, *, fill, breadth=None):
@@ -200,11 +201,10 @@ class FacetBody(ThermalBody):
         away, first = distance(self.positions[near], vertices, facets), self._outside_at_first[near]
         gone = outside(self.positions[near], vertices, facets) & (away > first * (1 + 1e-9))
         self._margin[near] = np.where(first > 0, 0.0, away)
-        passed = near[gone][np.argsort(-away[gone], kind="stable")]
+        passed = near[gone][np.argsort(-away[gone], kind="stable")][:self._alive.sum() - 1]
         self._alive[passed] = False
         living = np.flatnonzero(self._alive)
-        if len(living):
-            self._node_of = living[cKDTree(self.positions[living]).query(vertices[facets].mean(axis=1))[1]]
+        self._node_of = living[cKDTree(self.positions[living]).query(vertices[facets].mean(axis=1))[1]]
         return passed.tolist()
 
     def renew(self):

@@ -223,12 +223,15 @@ class Cycles(Programme):
         return self.times
 
     def planned(self):
-        self.approach_steps = np.zeros(len(self.scene.stages), int)
-        """Steps of each stage in which a worn tool comes to where the new one stood."""
+        scene = self.scene
+        self.approach_steps = np.zeros(len(scene.stages), int)
+        """Steps of each stage in which the tool comes to the rock: the new one, a worn one to where the new one stood.
+        """
+        self.approach_steps[0] = min(scene.steps_in(self.approach / self.velocity), scene.stages[0][1])
 
     @property
     def working_time(self):
-        """Simulated seconds without those in which a worn tool came to where the new one stood."""
+        """Simulated seconds without those in which the tool came to the rock."""
         scene = self.scene
         steps = self.approach_steps[:scene.stage].sum()
         if not scene.finished:
@@ -278,7 +281,7 @@ class Cycles(Programme):
     def results(self, columns):
         scene, area, working_time = self.scene, self.cut_area(), self.working_time
         cutting, thrust = (columns.get(f"{name}_force", np.zeros(1)) for name in ("cutting", "thrust"))
-        # On its way to the rock a worn tool meets no force, and that way is no cut.
+        # On its way to the rock the tool meets no force, and that way is no cut.
         at_work, unit = scene.time / working_time if working_time else 1.0, scene.units.force
         return {"working_time": (working_time, "s"), "mean_cutting_force": (at_work * float(cutting.mean()), unit),
                 "peak_cutting_force": (float(cutting.max()), unit),

@@ -94,6 +94,11 @@ def test_rock_that_is_not_there_stays_as_warm_as_it_is(found):
     assert gone == 300.0 and 280.0 < there < 299.9
 
 
+def test_pieces_that_fall_off_take_no_heat_of_what_is_worn(found):
+    kept, left = found["fallen"]
+    assert kept > 1 and abs(left) < 1e-6 * kept
+
+
 def test_spheres_in_space_close_their_balance(found):
     got = found["particles"]
     assert got["gone"] == 10 and got["hottest"] and got["shank"] == 0.0 and got["missing"] < 1e-14

@@ -83,6 +83,14 @@ def test_craters_are_the_deepest_of_whole_stretches():
     assert craters(x, x, 4.0).tolist() == [3.0, 7.0] and craters(x, x, 20.0).tolist() == []
 
 
+@pytest.mark.parametrize("chips", [1, 2, 7])
+def test_a_groove_of_whole_chips_has_as_many_craters(chips):
+    """x are the middles of its bins: the groove is one bin longer than they are apart."""
+    x = 1e-4 * (0.5 + np.arange(5 * chips))
+    assert craters(x, x, 5e-4) == pytest.approx(x[4::5], rel=1e-12) and len(craters(x[:-1], x[:-1], 5e-4)) == chips - 1
+    assert craters(x[:1], x[:1], 5e-4).tolist() == []
+
+
 @pytest.mark.parametrize("count", [0, 1, 5])
 def test_a_short_groove_has_no_errors(count):
     found = groove_results(x=np.arange(count) * 1e-3, height=np.full(count, -1e-3), chip=1e-2)

@@ -176,6 +176,18 @@ def test_the_outermost_dies_first():
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
+def test_the_last_node_stands_for_what_is_left(dimension):
+    """Friction of facets of which no node is left would have nowhere to go."""
+    tool, body = of_facets(dimension)
+    for _ in range(22):
+        recede(tool, 0.35e-3)
+        body.follow()
+    left = volume(tool.boundary.vertices, tool.boundary.facets) / tool.area
+    assert 0.02 < left < 0.5e-3 / HEIGHT
+    assert body.alive.sum() == 1 and body.alive[body.node_of].all()
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
 def test_shapes_followed_by_steps_and_at_once_are_equal(dimension):
     tool, body = of_facets(dimension)
     late, found = FacetBody(tool, fill=Grid(), breadth=body.breadth), []

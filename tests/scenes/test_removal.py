@@ -34,6 +34,14 @@ def test_uncovered_particles_come_without_a_push(wear_acceleration, least):
     assert 0 < found["balances"]["energy"]["removed_contacts"] < 0.1 * found["balances"]["energy"]["tool_work"]
 
 
+def test_wear_is_counted_against_the_limit_of_its_rule():
+    """By [Rojek 2003, 8.2] a disc goes once its diameter is worn from its breadth, which is more than its part of the
+    outline."""
+    depth, volume = (removal(removal=rule, wear_acceleration=1, start_up=2e-5) for rule in ("depth", "volume"))
+    assert depth["limit"] == pytest.approx([4 * radius**2 for radius in depth["radii"]], rel=1e-12)
+    assert volume["limit"] == volume["volumes"] != depth["limit"]
+
+
 def test_a_tooth_cut_in_two_goes_on_with_the_piece_that_is_fixed():
     found = removal(saw="true", wear_acceleration=100, start_up=1.2e-3)
     assert found["below"] == [0, 0, 0] and found["unlisted"] == []

@@ -245,7 +245,7 @@ def test_a_worn_tool_gets_the_time_to_come_to_the_rock(tmp_path):
     times = np.array([float(end["time"]) for end in ends])
     assert np.diff(times) == pytest.approx(seconds + behind[:-1] / 4.0, abs=2 * value(run, "time_step"))
     # The way to the rock is no work: not in the time that wear stands for, nor in the rock that is cut.
-    working = 4 * seconds
+    working = 4 * seconds - run.summary["parameters"]["approach"] / 4.0
     assert value(run, "working_time") == pytest.approx(working, abs=4 * value(run, "time_step"))
     tool_work = run.summary["balances"]["energy"]["tool_work"]
     assert value(run, "specific_energy") == pytest.approx(tool_work / (SMALL["depth_of_cut"] * 4.0 * working), rel=1e-3)

@@ -32,7 +32,7 @@ def lost(run, stage):
 
 
 def mean_at_work(run, name, stage):
-    """Mean of a force over the working time of a stage: without the time in which a worn tool comes to the rock."""
+    """Mean of a force over the working time of a stage: without the time in which the tool comes to the rock."""
     mean, worked = run.over_stage(name, np.mean, stage), run.over_stage("working_time", np.ptp, stage)
     if math.isnan(worked):
         return mean

@@ -334,6 +334,23 @@ def particles():
             "gone": int((~tool.erosion.alive).sum())}
 
 
+def fallen():
+    """The heat of a hot particle that accelerated wear takes away stays in the tool, whatever falls off with it.
+    -> J that the tool is to keep, and J that left above those of the first temperature."""
+    outline = tooth(height=0.02, width=0.012, rake=0.2, clearance=0.1, tip_radius=2e-3)
+    tool = LayeredTool(vertices=outline, radius=0.7e-3, breadth=0.006, seed=1, removal="volume", density=STEEL.density)
+    heat = engine(ParticleBody(tool), Engines(tool.count, 3), wear_acceleration=1e12)
+    tip = int(np.argmin(tool.positions[:, 1]))
+    beside = heat.below[[tip]].indices
+    capacity, joules = heat.network.capacity[2:].copy(), np.zeros(2 + tool.count)
+    joules[2 + tip] = 600.0 * capacity[tip]
+    heat.network.add_heat(joules)
+    loose = beside[:len(beside) // 2].tolist()
+    heat.remove([tip], loose)
+    cold = FIRST * capacity[[tip, *loose]].sum()
+    return [float(joules.sum()), float(-heat.balance()["removed"] - cold)]
+
+
 class Rubbed(Engines):
     """Contacts that rub the bottom of the tool, `depth` (m) of which the wear takes at each visit."""
 
@@ -390,7 +407,7 @@ def remeshed():
 
 MAKERS = {"plane": in_plane, "space": in_space}
 found = {"renewed": renewed(), "remeshed": remeshed(), "rock renewed": rock_renewed(), "absent": absent(),
-         "particles": particles()}
+         "particles": particles(), "fallen": fallen()}
 for name, maker in MAKERS.items():
     found[name] = {"radiating": radiating(maker), "friction": friction(maker), "exchange": exchange(maker),
                    "shared": shared(maker),

@@ -104,7 +104,9 @@ if scene.heat:
     scene.heat.act()
 balances = {name: balance for name, (balance, _) in scene.output.balances().items()}
 print("JSON" + json.dumps({"removed": int(np.sum(~tool.erosion.alive)), "overlaps": found, "pushes": pushes,
-                           "below": below, "unlisted": sorted(unlisted), "balances": balances},
+                           "below": below, "unlisted": sorted(unlisted), "balances": balances,
+                           "limit": wear.limit.tolist(), "radii": tool.radii.tolist(),
+                           "volumes": tool.volumes.tolist()},
                           default=lambda x: x.item()))
 sys.stdout.flush()
 os._exit(0)
