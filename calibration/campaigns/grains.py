@@ -1,6 +1,6 @@
 """Campaign of grains: the Hawkesbury sandstone of [Bahaaddini 2018], and the parameter study around it.
 
-    python3 -m calibration.campaigns.grains DIR [calibrated|study ...] [--read | --stored]
+    python3 -m calibration.campaigns.grains DIR [calibrated|study|sliding ...] [--read | --stored]
         [--jobs N | --scheduler ADDRESS]
 
 N runs at a time (2), or as many as a dask scheduler's workers take; a folder a run; finished runs are not repeated, so
@@ -34,6 +34,8 @@ STUDIED = 5e6
 SEEDS = tuple(range(166, 191))
 """Packings that the rock was not calibrated on."""
 STUDY_SEEDS = 61, 62, 63, 64
+SLIDING_SEEDS = SEEDS[:3]
+"""Packings that are pressed at the highest confinement until what has failed slides."""
 
 
 def rock():
@@ -95,6 +97,9 @@ def planned(campaign):
     base = rock()
     if campaign == "calibrated":
         cases, seeds, which = {("", 0.0): {}}, SEEDS, tests(*CONFINEMENTS)
+    elif campaign == "sliding":
+        highest = {test: job for test, job in tests(CONFINEMENTS[-1]).items() if "MPa" in test}
+        cases, seeds, which = {(campaign, 0.0): dict(strain_max=0.12, drop=0.5)}, SLIDING_SEEDS, highest
     else:
         cases = {(name, x): change for name, points in study(base).items() for x, change in points.items()}
         seeds, which = STUDY_SEEDS, tests(STUDIED)
@@ -108,7 +113,7 @@ def planned(campaign):
     return jobs
 
 
-CAMPAIGNS = "calibrated", "study"
+CAMPAIGNS = "calibrated", "study", "sliding"
 
 
 def found(folder):
@@ -129,8 +134,9 @@ def write(folder):
     rock_data["plane"]["measured"] = tables.as_measured(measured)
     written[1].write_text(json.dumps(rock_data, indent=1) + "\n", encoding="utf-8")
     own = {(test, seed): run for (name, _, test, seed), run in runs.items() if not name}
+    slid = [run for (name, *_), run in runs.items() if name == "sliding"]
     with matplotlib.rc_context(plots.STYLE):
-        for name, figure in figures.drawn(own, points, rows):
+        for name, figure in figures.drawn(own, points, rows, slid):
             written.append(folder / f"{name}.png")
             figure.savefig(written[-1])
     generated.record(*filter(Path.exists, written))

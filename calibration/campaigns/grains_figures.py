@@ -2,6 +2,7 @@
 study."""
 import numpy as np
 from matplotlib.collections import LineCollection
+from scipy.spatial import cKDTree
 
 from calibration.campaigns.grains_tables import ELASTIC, STATED, STRENGTHS, table_2_fits, tested, trend_of
 from calibration.campaigns.uniaxial_figures import CRACK, limits_of, thinned
@@ -9,16 +10,21 @@ from calibration.laboratory import envelope_figure
 from rockwear.report import palette, published, shapes
 from rockwear.report.plots import MM, canvas, discs, frame
 
+NEAR = 2.5
+"""Mean diameters within which particles tell the strain at one of them."""
 ARROWS = {"rises": "↗", "falls": "↘", "unchanged": "→"}
 
 
-def drawn(own, points, rows):
+def drawn(own, points, rows, slid):
     """(name, Figure) of all that the runs allow. own: {(test, seed): RunFolder} of the calibrated rock; points:
-    {parameter: as of grains_tables.points}; rows: as of grains_tables.row_of."""
+    {parameter: as of grains_tables.points}; rows: as of grains_tables.row_of; slid: RunFolders of rock pressed far past
+    its peak."""
     if own:
         yield "grains_envelope", envelope(rows)
         yield "grains_curves", curves(own)
         yield "grains_failure", failures(own)
+    if slid:
+        yield "grains_sliding", sliding(slid)
     for parameter, by_property in points.items():
         if any(len(values) > 1 for values in by_property.values()):
             name = parameter.partition(",")[0].partition(" kn/")[0].replace(" ", "_")
@@ -93,6 +99,39 @@ def failure(axes, run, title):
     axes.add_collection(LineCollection(MM * shapes.cracks(places, radii, broken, near=2), colors=CRACK, linewidths=1))
     frame(axes, limits_of(run), f"{title}: {len(broken)} broken")
     axes.set_xlabel("")
+
+
+def sliding(runs):
+    """Where rock that is pressed far past its peak shears [Bahaaddini 2018, fig. 9], and its stress over strain."""
+    figure, panels = canvas(5 * len(runs), 6, 2, len(runs))
+    for axes, below, run in zip(panels, panels[len(runs):], runs):
+        first, last = (run.snapshot(k)["rock_positions"] for k in (0, -1))
+        radii = run.model["rock_radii"]
+        strain = shear_strain(first, last, 2 * NEAR * radii.mean())
+        sheared = discs(axes, last, 1.1 * radii, array=strain, cmap="magma_r", linewidths=0, clim=(0, 0.5))
+        figure.colorbar(sheared, ax=axes, label="largest shear strain", shrink=0.6)
+        left, right, low, high = limits_of(run)
+        bulge = MM * np.ptp(last[:, 1]) - MM * run.model["box"][1]
+        pressed, seed = 1e-6 * run.parameter("confinement"), run.parameter("seed")
+        frame(axes, (left, right, low - bulge, high + bulge), f"σ₃ = {pressed:g} MPa, packing {seed:g}")
+        below.plot(100 * thinned(run.column("platen_strain")), 1e-6 * thinned(run.column("stress")))
+        below.set(xlabel="strain between the platens, %", ylabel="σ₁, MPa", xlim=(0, None), ylim=(0, None))
+    return figure
+
+
+def shear_strain(places, now, near):
+    """(n,) largest shear strain at each particle, half the difference of the principal values of Green's strain (F^T F
+    - 1)/2, F fitted to the relative motion of those nearer than `near` (m); nan of fewer than three.
+
+    places, now: (n, 2) m, before and after.
+    """
+    found = np.full(len(places), np.nan)
+    for n, others in enumerate(cKDTree(places).query_ball_point(places, near)):
+        if len(others) > 3:
+            gradient = np.linalg.lstsq(places[others] - places[n], now[others] - now[n], rcond=None)[0]
+            low, high = np.linalg.eigvalsh(0.5 * (gradient @ gradient.T - np.eye(2)))
+            found[n] = 0.5 * (high - low)
+    return found
 
 
 def parameter_figure(parameter, by_property):

@@ -65,8 +65,9 @@ def cells(positions, *, box=None, polygon=None):
     """Voronoi cells of particles within a container, as Cells.
 
     positions (n, d) m, of a packing that fills the container: a box of sides (d,) m with one corner at the origin, in
-    2D or 3D; or a polygon (k, 2) m. Each particle near a side has a mirror image behind it: the face between the two lies in the
-    side. (Around a re-entrant corner two cells may overlap a little, or leave a little gap.) Raises ParameterError.
+    2D or 3D; or a polygon (k, 2) m. Each particle near a side has a mirror image behind it: the face between the two
+    lies in the side. (Around a re-entrant corner two cells may overlap a little, or leave a little gap.) Raises
+    ParameterError.
     """
     positions = np.asarray(positions, float)
     require((box is None) != (polygon is None), "box", box, "given, or else polygon, not both")

@@ -88,6 +88,20 @@ def test_the_study_varies_one_thing_at_a_time_around_the_rock_of_the_library():
     assert not set(grains.SEEDS) & {1, 2, 3, 4, 5}
 
 
+def test_strain_is_found_whatever_the_rotation_and_sliding_is_planned_apart():
+    rng, (cos, sin) = np.random.default_rng(1), (np.cos(1.1), np.sin(1.1))
+    places = rng.random((400, 2))
+    sheared = places @ np.array([[1.0, 0.0], [0.3, 1.0]]) @ np.array([[cos, -sin], [sin, cos]]) + 5.0
+    # Simple shear by g: E = ((0, g/2), (g/2, g^2/2)).
+    found = grains_figures.shear_strain(places, sheared, 0.2)
+    assert found == pytest.approx(np.hypot(0.15, 0.3**2 / 4), rel=1e-9)
+    assert np.isnan(grains_figures.shear_strain(places[:2], sheared[:2], 2.0)).all()
+    plan = grains.planned("sliding")
+    assert [key[2:] for key in plan] == [("10 MPa", seed) for seed in grains.SEEDS[:3]]
+    assert all(values["strain_max"] > 0.1 for *_, values in plan.values())
+    assert not set(plan) & set(grains.planned("calibrated"))
+
+
 def stored():
     """Rows of the strengths in calibration/results/grains."""
     with open(RESULTS / "grains.csv", newline="", encoding="utf-8") as file:
