@@ -52,6 +52,9 @@ the energy balance misses 5 %, with 3 0.6 %, with 2 less."""
 IN_THE_PLANE = parameters.SPECIMEN
 IN_SPACE = parameters.BLOCK.without("scale_factor", "full", "gravity")
 """The specimen."""
+SIDES = {"width": "length of the specimen, along the loading", "height": "height of the specimen, across the loading",
+         "depth": "depth of the specimen, across the loading"}
+"""{parameter of a specimen: what it is in a test}."""
 
 
 def groups(*own, rock=IN_THE_PLANE, without=(), test=None, **defaults):
@@ -59,7 +62,8 @@ def groups(*own, rock=IN_THE_PLANE, without=(), test=None, **defaults):
     without: names of those of every test that it does not have; test: {name: value} -> name of the test whose loading
     a rock decides on (loading.LoadedRock), None: it does not; defaults: other than there."""
     def kept(group):
-        return group.without(*(p.name for p in group.parameters if p.name in without))
+        return replace(group, parameters=tuple(replace(p, meaning=SIDES.get(p.name, p.meaning)) for p in
+                                               group.parameters if p.name not in without))
 
     bonds, loading = parameters.BONDS.parameters, LOADING
     if test:

@@ -93,7 +93,8 @@ def draw(name, rows, found, swept, units, results):
     figure, panels = plots.grid(len(results), 12, 0.6)
     for axes, result in zip(panels, results):
         size = max((abs(value) for row in rows if math.isfinite(value := _number(found[row.name], result))), default=0)
-        unit, factor, added = page.shown_unit(found[rows[0].name].unit(result), size)
+        own = next((u for row in rows if (u := found[row.name].unit(result))), "")
+        unit, factor, added = page.shown_unit(own, size)
         for words, of in groups.items():
             of = sorted(of, key=lambda row: places.index(row.values[name]))
             x = [row.values[name] if numbers else places.index(row.values[name]) for row in of]
@@ -105,6 +106,7 @@ def draw(name, rows, found, swept, units, results):
         if not numbers:
             axes.set_xticks(range(len(places)), [str(place) for place in places])
             axes.set_xlim(-0.5, len(places) - 0.5)
+        axes.ticklabel_format(axis="y", useOffset=False)
         axes.set(xlabel=f"{page.words(name)} / {units[name]}" if units[name] not in ("", "-") else page.words(name),
                  ylabel=f"{page.words(result)} / {unit}" if unit else page.words(result))
     if 1 < len(groups) <= MOST_LINES:

@@ -18,6 +18,9 @@ from rockwear.kernels.polygon import check_polygon, cross as cross_in_plane, ins
 PAIRS = 1_000_000
 """Most pairs of points and triangles processed together in `distance`: some 500 MB of temporaries if all are near."""
 
+LEVEL = 1e-6
+"""Part of a tool's size by which its top may fall off and its back lean."""
+
 
 def cross(a, b):
     """(n, 3) vector products of the rows of a and b (n, 3); faster than np.cross, equal to the last bit."""
@@ -239,6 +242,13 @@ def foremost(vertices, facets, below):
     begin, end = edges[:, low[edges[0]] & ~low[edges[1]]]
     crossing = x[begin] + (below - y[begin]) / (y[end] - y[begin]) * (x[end] - x[begin])
     return float(np.concatenate([x[low], crossing]).max(initial=-np.inf))
+
+
+def held_sides(vertices, facets):
+    """(2, m) bool: facets that lie in the top, the largest y, and in the back, the smallest x, of a tool."""
+    slack = LEVEL * np.ptp(vertices[:, :2], axis=0).max()
+    top, back = vertices[:, 1] > vertices[:, 1].max() - slack, vertices[:, 0] < vertices[:, 0].min() + slack
+    return np.stack([top[facets].all(axis=1), back[facets].all(axis=1)])
 
 
 def segments(polygon):

@@ -4,7 +4,7 @@ import warnings
 
 import numpy as np
 
-from rockwear.kernels.boundary import area_vectors, check_boundary, distance, foremost, refine, segments
+from rockwear.kernels.boundary import area_vectors, check_boundary, distance, foremost, held_sides, refine, segments
 from rockwear.kernels.checks import ParameterError, positive, require
 from rockwear.kernels.polygon import area, check_polygon, perimeter, thinned
 from rockwear.kernels.worn_boundary import WornBoundary
@@ -33,9 +33,7 @@ class FacetTool:
         self.first, self.first_facets = vertices, facets
         self.density = positive("tool_density", density, "kg/m3")
         if fixed is None:
-            slack = 1e-6 * np.ptp(vertices[:, :2], axis=0).max()
-            top, back = vertices[:, 1] > vertices[:, 1].max() - slack, vertices[:, 0] < vertices[:, 0].min() + slack
-            fixed = top[facets].all(axis=1) | back[facets].all(axis=1)
+            fixed = held_sides(vertices, facets).any(axis=0)
         self.boundary = WornBoundary(vertices=vertices, facets=facets, fixed=fixed)
         self.count = len(facets)
 
@@ -50,6 +48,9 @@ class FacetTool:
         off = CUT_OFF * min(positive("segment", segment, "m"), area(polygon) / perimeter(polygon))
         vertices, facets = refine(*segments(thinned(check_polygon(polygon), off)), segment)
         return cls(vertices=vertices, facets=facets, density=density)
+
+    blunted = 0.0
+    """m by which its lowest point lies above the outline's tip."""
 
     @property
     def area(self):

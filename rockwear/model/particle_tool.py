@@ -4,6 +4,7 @@ from scipy.spatial import cKDTree
 
 from rockwear.kernels import packing
 from rockwear.kernels import polygon as outline
+from rockwear.kernels.boundary import held_sides, segments
 from rockwear.kernels.voronoi import cells
 from rockwear.kernels.checks import ParameterError, known_as, positive, require
 from rockwear.kernels.conduction import calibrated_conductance, paths
@@ -41,18 +42,33 @@ class ParticleTool:
     """A rigid tool of particles that wear away.
 
     vertices: (k, 2) m, its outline; positions: (n, 2 or 3) m; radii: (n,) m; area: m2 of the outline, in space m3 of
-    the volume; volumes: (n,) m3, the part that each particle stands for; density: kg/m3; fixed: (n,) bool, particles
-    that the shank holds: no surface at first, they wear once those before them are gone; surface: (n,) bool, those open
-    to wear at first; pairs: (m, 2), neighbours that cover one another; removal and thickness: of kernels.erosion.
+    the volume; volumes: (n,) m3, the part that each particle stands for; density: kg/m3; surface: (n,) bool, those open
+    to wear at first; pairs: (m, 2), neighbours that cover one another; back: whether the shank holds the tool at the
+    back, too; removal and thickness: of kernels.erosion.
+
+    `fixed` (n,) bool are the particles that the shank holds, those within 1.5 radii of the top (of the back) and in any
+    case the topmost: no surface at first, they wear once those before them are gone. `held`: whether the outline has a
+    level top (or an upright back) for it.
     """
 
-    def __init__(self, *, vertices, positions, radii, area, volumes, density, fixed, surface, pairs, removal,
+    def __init__(self, *, vertices, positions, radii, area, volumes, density, surface, pairs, removal, back=False,
                  thickness=1.0):
         self.vertices, self.positions, self.radii, self.area = vertices, positions, radii, area
-        self.volumes, self.density, self.fixed, self.count = volumes, density, fixed, len(radii)
+        self.volumes, self.density, self.count = volumes, density, len(radii)
         self.masses = density * volumes
+        (x, y), sides = positions[:, :2].T, held_sides(*segments(vertices)).any(axis=1)
+        self.held = bool(sides[0] or back and sides[1])
+        self.fixed = fixed = y > vertices[:, 1].max() - 1.5 * radii
+        if back:
+            fixed |= x < vertices[:, 0].min() + 1.5 * radii
+        fixed[np.argmax(y)] = True
         self.erosion = Erosion(radii=radii, volumes=volumes, pairs=pairs, thickness=thickness, rule=removal,
                                surface=np.flatnonzero(surface & ~fixed), fixed=np.flatnonzero(fixed))
+
+    @property
+    def blunted(self):
+        """m by which the lowest particle ends above the outline's tip."""
+        return float((self.positions[:, 1] - self.radii).min() - self.vertices[:, 1].min())
 
     def foremost(self, below):
         """Largest x reached by particles with any part below the height `below` (both m, in the tool's own frame), as
@@ -104,12 +120,9 @@ class Tool(ParticleTool):
             filled = fill(vertices, **self._packing)
         positions, radii = filled["positions"], filled["radii"]
         self.cells = cells(positions, polygon=vertices)
-        fixed = positions[:, 1] > vertices[:, 1].max() - 1.5 * radii
-        if shank == "top and back":
-            fixed |= positions[:, 0] < vertices[:, 0].min() + 1.5 * radii
         super().__init__(vertices=vertices, positions=positions, radii=radii, area=area,
-                         volumes=area * radii**2 / np.sum(radii**2), density=density, fixed=fixed,
-                         surface=self.cells.at_walls, pairs=self.cells.edges, removal=removal)
+                         volumes=area * radii**2 / np.sum(radii**2), density=density, surface=self.cells.at_walls,
+                         pairs=self.cells.edges, removal=removal, back=shank == "top and back")
 
     def paths(self, model, conductivity):
         """Pairs (m, 2) of particles that exchange heat and their conductances (m,) W/K; model: of conduction.PATHS."""
@@ -142,9 +155,8 @@ class LayeredTool(ParticleTool):
         positions, radii = _stack(layer, layers, filled["radii"][0]), np.tile(filled["radii"], layers)
         area = outline.area(vertices) * self.breadth
         super().__init__(vertices=vertices, positions=positions, radii=radii, area=area,
-                         volumes=np.full(len(number), area / len(number)), density=density,
-                         fixed=positions[:, 1] > vertices[:, 1].max() - 1.5 * radii, surface=outermost, pairs=pairs,
-                         removal=removal, thickness=2 * radii)
+                         volumes=np.full(len(number), area / len(number)), density=density, surface=outermost,
+                         pairs=pairs, removal=removal, thickness=2 * radii)
 
 
 def _stack(places, layers, radius):

@@ -25,7 +25,8 @@ p {margin: .4em 0 .8em} .ended {color: $faint; font-size: 1.1em}
 .warning {background: $warning; border-left: 4px solid $warning_edge; padding: .4em .8em}
 img {max-width: 100%; display: block; margin: .5em auto}
 .tiles {display: grid; grid-template-columns: repeat(5, 1fr); gap: 10px; margin: 1em 0}
-@media (max-width: 800px) {.tiles {grid-template-columns: repeat(2, 1fr)}}
+@media (max-width: 1000px) {.tiles {grid-template-columns: repeat(3, 1fr)}}
+@media (max-width: 600px) {.tiles {grid-template-columns: repeat(2, 1fr)}}
 .tile {background: $panel; border-radius: 6px; padding: .5em .8em}
 .tile b {display: block; font-size: 1.35em; white-space: nowrap}
 .tile span {color: $faint; font-size: .85em; display: block}

@@ -12,6 +12,9 @@ from rockwear.run import vtk
 from rockwear.scenes.balances import energy_warnings, with_residual
 from rockwear.scenes.output import Output, crack_table, density_map
 
+SHALLOW = 0.05
+"""Part of the depth of cut that may be missing below the tool's lowest particle without a word."""
+
 
 class CutOutput(Output):
     """Output of a scenes.cut.Cut, whatever its parts."""
@@ -108,12 +111,13 @@ class CutOutput(Output):
             fields["density"] = shot["density"]
         if scene.heat:
             fields["temperature"] = shot["temperature"][:rock.count]
-        places, of_tool = scene.tool.points(scene.heat.temperature_of_pieces() if scene.heat else None)
+        places, of_tool, facets = scene.tool.points(scene.heat.temperature_of_pieces() if scene.heat else None)
         there = np.isfinite(shot["rock_positions"]).all(axis=1)
         vtk.write(folder, "rock", number, scene.time, shot["rock_positions"][there],
                   {name: values[there] for name, values in fields.items()})
         turned = Pose(shot["tool_offset"], shot["tool_turn"]).of(places[:, :2])
-        vtk.write(folder, "tool", number, scene.time, np.column_stack([turned, places[:, 2:]]), of_tool)
+        vtk.write(folder, "tool", number, scene.time, np.column_stack([turned, places[:, 2:]]), of_tool,
+                  facets)
 
     def progress(self):
         scene = self.scene
@@ -163,7 +167,15 @@ class CutOutput(Output):
     def warnings(self):
         balance = self.energy_balance()
         idle = [] if balance["tool_work"] else ["the tool did not meet the rock: forces, wear and heat are 0"]
-        return [*idle, *energy_warnings(balance), *self.scene.programme.warnings(), *self._wear_warnings()]
+        return [*idle, *energy_warnings(balance), *self.scene.programme.warnings(), *self._depth_warnings(),
+                *self._wear_warnings()]
+
+    def _depth_warnings(self):
+        """That the new tool's particles do not fill its outline down to the tip."""
+        missed, asked = self.scene.tool.model.blunted, self.scene.depth_of_cut
+        return [] if missed <= SHALLOW * asked else [
+            f"the tool's lowest particle ends {missed:.2g} m above the tip of its outline: it cut {asked - missed:.3g} "
+            f"m deep and not {asked:g}, over which specific energy counts. Smaller tool particles fill a sharper tip"]
 
     def _wear_warnings(self):
         scene = self.scene

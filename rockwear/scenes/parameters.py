@@ -89,12 +89,14 @@ OUTLINE = (
     Parameter("tooth_width", 0.045, "m", length, "width of the tooth at its top", "ours", PARAMETRIC),
     Parameter("rake", 0.0, "deg", number(-80, 80), "rake angle, from the vertical", "ours", PARAMETRIC),
     Parameter("clearance", 3.0, "deg", number(0, 80), "clearance angle, from the horizontal", "ours", PARAMETRIC),
-    Parameter("tip_radius", 4e-3, "m", length, "rounding of the tip; it lies so far behind the tool's origin",
-              "ours"),
+    Parameter("tip_radius", 4e-3, "m", length, "rounding of the tip, which lies so far behind the tool's origin; an "
+              "outline of your own is not rounded", "ours"),
     Parameter("wear_flat", 0.0, "m", length_or_zero, "length of a worn flat behind the tip", "ours", PARAMETRIC),
-    Parameter("flat_angle", 0.0, "deg", number(0, 45), "by which the flat leans into the rock, its heel lowest; 0: "
-              "along the motion", "calibration/results/steady_cut.md", {**PARAMETRIC, "wear_flat": Above(0)}),
-    Parameter("outline", "", "", file, "CSV file of x, y in m: a tooth of your own in place of the seven above"))
+    Parameter("flat_angle", 0.0, "deg", number(0, 45), "by which the flat leans into the rock; its heel is then "
+              "the lowest point, from which arc lengths count; 0: along the motion",
+              "calibration/results/steady_cut.md", {**PARAMETRIC, "wear_flat": Above(0)}),
+    Parameter("outline", "", "", file, "CSV file of x, y in m: a tooth of your own in place of the above. A "
+              "level top and an upright back are held by the shank"))
 SHAPE = (
     Parameter("work_fraction", 1.0, "", number(0, 1), "part of the friction work that wears a tool of facets",
               "[Rojek 2003, eq. 6.9]; [Rocky, eq. 2-53]: 0.5", OF_FACETS),

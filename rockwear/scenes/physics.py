@@ -41,15 +41,20 @@ class ToolWear:
     tolerance: float = 0.1
 
     def trust(self, tool):
-        """{name: (value, unit)}: the two rules for accelerated wear [Rocky], judged from the run's own record."""
+        """{name: (value, unit)}: the two rules for accelerated wear [Rocky], judged from the run's own record, and up
+        to which acceleration they and a slow recession of facets (`tool.slow_recession`) are kept."""
+        error, events, trusted = self._by_the_record(tool)
+        return {"wear_distribution_error": (error, "-"), "contact_events_per_particle": (events, "-"),
+                "trusted_wear_acceleration": (min(trusted, tool.slow_recession()), "-")}
+
+    def _by_the_record(self, tool):
+        """(error of the distribution, contact events per particle, acceleration that the two rules allow)."""
         engine = tool.wear_engine
         error = distribution_error(tool.profile.increments)
         kept = self.removal == "none"
         events = math.inf if kept else events_per_particle(events=engine.events, worn=engine.worn, limit=engine.limit)
-        trusted = trusted_wear_acceleration(wear_acceleration=self.acceleration, error=error, events=events,
-                                            tolerance=self.tolerance)
-        return {"wear_distribution_error": (error, "-"), "contact_events_per_particle": (events, "-"),
-                "trusted_wear_acceleration": (trusted, "-")}
+        return error, events, trusted_wear_acceleration(wear_acceleration=self.acceleration, error=error, events=events,
+                                                        tolerance=self.tolerance)
 
     def warnings(self, tool):
         """Lines on how well the distribution of wear is known, and on wear that the rule of removal lost."""
@@ -63,7 +68,7 @@ class ToolWear:
             "and less is lost at a lower wear_acceleration or a shorter wear_period"]
 
     def _distrust(self, tool):
-        error, events, trusted = (value for value, _ in self.trust(tool).values())
+        error, events, trusted = self._by_the_record(tool)
         if math.isnan(events) or (math.isfinite(error) and trusted >= self.acceleration):
             return []
         if not math.isfinite(error):

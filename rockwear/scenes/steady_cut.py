@@ -12,7 +12,7 @@ from rockwear.kernels.cut_sizes import cut_sizes
 from rockwear.kernels.fragments import chip_length
 from rockwear.kernels.groove import groove_results
 from rockwear.kernels.parameter import Group, Parameter, Presets, choice, length, length_or_zero, number, zero_or
-from rockwear.kernels.polygon import reach, tip
+from rockwear.kernels.polygon import reach
 from rockwear.kernels.rigid_motion import Straight
 from rockwear.kernels.steady_record import (
     CELL, ENOUGH_CHIPS, LONG_ENOUGH, is_known, steady_results, uncertainty, with_error)
@@ -90,7 +90,8 @@ def make(values):
                     radius_max=v.radius_max, porosity=v.porosity, seed=v.seed, bonding_gap=v.bonding_gap,
                     grading_factor=v.grading_factor, fine_depth=v.fine_depth, density=v.rock_density)
     path = v.window_height - v.depth_of_cut
-    rock.leave_out(above_groove(rock, outline + [v.window_behind, path], path, math.radians(v.begin_angle)))
+    rock.leave_out(above_groove(rock, outline + [v.window_behind, path], path, slope=math.radians(v.begin_angle),
+                                edge=v.window_behind - v.tip_radius))
     record = CutRecord(rock=rock, start=(v.window_behind, path))
     programme = SteadyCut(
         velocity=v.velocity * v.time_scale, cut_length=v.cut_length, ramp_length=v.ramp_length, accuracy=v.accuracy,
@@ -117,17 +118,18 @@ def check_window(v):
     require(v.cut_length > v.ramp_length, "cut_length", v.cut_length, f"more than ramp_length = {v.ramp_length:g}", "m")
 
 
-def above_groove(rock, outline, path, slope):
+def above_groove(rock, outline, path, *, slope, edge):
     """(n,) bool: particles of the rock that reach above the way of the tool at y = `path` (m) behind its front, or
-    above a plane that rises from its tip.
+    above a plane that rises from its cutting edge.
 
-    outline: (k, 2) m, the tool where it begins; slope: rad, of the plane.
+    outline: (k, 2) m, the tool where it begins; slope: rad, of the plane; edge: m, x of the cutting edge, which is not
+    the tool's lowest place where a flat leans.
     """
     (x, y), r = rock.positions.T, rock.radii
     heights = np.linspace(-1.0, 1.0, 9)[:, None] * r + y
     front = np.where(heights > path, reach(outline, np.maximum(heights, path)), -np.inf).max(axis=0)
     # How far a disc reaches above the plane.
-    over = (y - path) * math.cos(slope) - (x - tip(outline)[0]) * math.sin(slope) + r
+    over = (y - path) * math.cos(slope) - (x - edge) * math.sin(slope) + r
     return (y + r > path) & ((x - r < front) | (over > 0))
 
 
@@ -241,11 +243,11 @@ class SteadyCut(Programme):
         if forces and not forces["long_enough"][0]:
             found.append(f"means are of {forces['steady_length'][0] / self.scene.depth_of_cut:.1f} depths of cut and "
                          f"{forces['peaks'][0]} chips after the transient: a cut_length for {LONG_ENOUGH} and "
-                         f"{ENOUGH_CHIPS} tells their errors")
+                         f"{ENOUGH_CHIPS} makes their errors reliable")
         known = uncertainty(forces) if self.accuracy and forces else 0.0
         if known > self.accuracy:
             far = (f"is known to {100 * known:.0f} %" if known < math.inf else
-                   "has an error that this record is too short to tell")
+                   "is of a record too short to rely on its error")
             found.append(f"the mean cutting force {far}, and was to be known to {100 * self.accuracy:g} %: a longer "
                          "cut_length tells it")
         return found

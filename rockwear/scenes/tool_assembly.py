@@ -1,4 +1,5 @@
 """A rigid tool in a scene, of particles or of facets, in the plane or in space: bodies, contact, wear, shape."""
+import math
 from abc import ABC, abstractmethod
 from functools import cached_property
 
@@ -12,7 +13,7 @@ from rockwear.engines.tool_contact import ToolContact
 from rockwear.engines.wear import Wear
 from rockwear.engines.wear_profile import WearProfile
 from rockwear.kernels.checks import require
-from rockwear.kernels.wear_statistics import places
+from rockwear.kernels.wear_statistics import RECESSION, places
 from rockwear.model.contact import PLANE
 from rockwear.model.facet_tool import write_stl
 from rockwear.model.thermal_body import ParticleBody
@@ -21,9 +22,6 @@ from rockwear.scenes.tool_bodies import FacetBodies, SphereBodies, ToolBodies
 
 PROFILE_PERIOD = 10
 """Visits of the wear between rows of its profile."""
-RECESSION = 0.1
-"""Recession over slip up to which a wear acceleration is trusted: friction was 10 % below that of a tool that keeps its
-shape at 0.16, 32 % at 1.1, 73 % at 3.6 (calibration/campaigns/two_tools.py, seed 1)."""
 
 
 class ToolAssembly(ABC):
@@ -135,8 +133,8 @@ class ToolAssembly(ABC):
 
     @abstractmethod
     def points(self, temperature):
-        """(places (n, d) m in the tool's frame, {field: (n,)}) for ParaView; temperature: (pieces,) K, None without
-        heat."""
+        """(places (n, d) m in the tool's frame, {field: (n,)}, corners (m, d) of its facets among them or None) for
+        ParaView; temperature: (pieces,) K, None without heat."""
 
     @abstractmethod
     def results(self):
@@ -145,6 +143,10 @@ class ToolAssembly(ABC):
     @abstractmethod
     def words(self):
         """How far it is worn, in a few words."""
+
+    def slow_recession(self):
+        """Largest wear acceleration at which the surface recedes slowly against the slip; of particles any."""
+        return math.inf
 
     def warnings(self):
         """Lines on what of its wear is not to be relied on."""
@@ -203,7 +205,7 @@ class ParticleAssembly(ToolAssembly):
         fields = {"diameter": 2 * self.model.radii[alive], "worn_depth": self.snapshot()["worn_depth"][alive]}
         if temperature is not None:
             fields["temperature"] = temperature[alive]
-        return self.model.positions[alive], fields
+        return self.model.positions[alive], fields, None
 
     def results(self):
         erosion, unit = self.model.erosion, self.units.volume
@@ -217,6 +219,13 @@ class ParticleAssembly(ToolAssembly):
 
     def words(self):
         return f"{100 * self.model.erosion.mass_fraction_lost:.2f} % of the tool worn"
+
+    def warnings(self):
+        tool, found = self.model, super().warnings()
+        if not tool.held:
+            found.append(f"the shank holds {np.count_nonzero(tool.fixed)} of the tool's {tool.count} particles: its "
+                         "outline has no level top (+y) or upright back (-x)")
+        return found
 
 
 class FacetAssembly(ToolAssembly):
@@ -295,7 +304,7 @@ class FacetAssembly(ToolAssembly):
             # The mean of the facets at each vertex.
             vertex, of_facet = boundary.facets.ravel(), np.repeat(temperature, boundary.facets.shape[1])
             fields["temperature"] = np.bincount(vertex, of_facet) / np.bincount(vertex)
-        return boundary.vertices, fields
+        return boundary.vertices, fields, boundary.facets
 
     def results(self):
         # Where the shape is kept, what each facet would have gone back.
@@ -307,18 +316,21 @@ class FacetAssembly(ToolAssembly):
     def words(self):
         return f"{100 * self.wear_engine.log()['mass_lost'][0]:.2f} % of the tool worn"
 
+    def slow_recession(self):
+        recession = self.wear_engine.recession
+        return self.wear.acceleration * RECESSION / recession if self.reshape and recession > 0 else math.inf
+
     def warnings(self):
         recession, found = self.wear_engine.recession, super().warnings()
         if not self.model.boundary.fixed.any():
             found.append("the shank holds no facet of the tool, which has neither a level top (+y) nor an upright back "
                          "(-x): all of its faces wear")
-        if not self.reshape or not recession > RECESSION:
+        if not recession > RECESSION or not self.reshape:
             return found
-        factor = self.wear.acceleration
         return [*found,
                 f"the face recedes by {recession:.2g} of the way that rock slides on it, away from what presses there: "
                 "less wears than the same work at a lower wear acceleration would. Use wear_acceleration = "
-                f"{factor * RECESSION / recession:.2g} at most instead of {factor:g}, and run that much longer"]
+                f"{self.slow_recession():.2g} at most instead of {self.wear.acceleration:g}, and run that much longer"]
 
     def write_shape(self, folder):
         if self.units is not PLANE and self._shape_changes():

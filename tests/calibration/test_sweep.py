@@ -365,6 +365,17 @@ def test_the_page_draws_each_swept_parameter_and_links_the_reports(tmp_path, cap
         assert (tmp_path / f"{name}.png").stat().st_size > 5000
 
 
+def test_figures_have_the_unit_of_a_result_that_the_first_row_lacks(tmp_path):
+    rows = [made_up(tmp_path, {"depth": ""}, {"depth": depth}) for depth in (1e-3, 2e-3, 3e-3)]
+    found = {row.name: row.run_folder() for row in rows}
+    for k, row in enumerate(rows[1:]):
+        found[row.name].summary["results"]["tool_temperature_max"] = {"value": 296.15 + 1e-6 * k, "unit": "K"}
+    figure = page.draw("depth", rows, found, ["depth"], {"depth": "m"}, ["tool_temperature_max"])
+    axes, = (axes for axes in figure.axes if axes.lines)
+    assert axes.get_ylabel().endswith("°C") and axes.lines[0].get_ydata()[1] == pytest.approx(23.0)
+    assert not axes.yaxis.get_major_formatter().get_useOffset()
+
+
 def test_a_row_that_failed_is_none_that_is_done(tmp_path, monkeypatch, capsys):
     """Its worker was lost once its run had ended."""
     rows = [made_up(tmp_path, {"depth": ""}, {"depth": depth}) for depth in (1e-3, 2e-3)]

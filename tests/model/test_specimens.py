@@ -122,6 +122,28 @@ def test_tool_has_the_mass_of_its_outline_and_no_detached_particle(unworn):
     assert made.positions[surface, 1].min() < 0.6e-3
 
 
+@pytest.mark.parametrize("corners, held", [
+    ([(0, 0), (4e-3, 0.034), (-0.022, 0.022)], False), ([(0, 0), (4e-3, 0.03), (-0.02, 0.026), (-0.016, 5e-3)], False),
+    ([(0, 0), (4e-3, 0.03), (-0.02, 0.03), (-0.016, 5e-3)], True),
+    ([(0, 0), (4e-3, 0.03), (-0.016, 0.026), (-0.016, 5e-3)], True)])
+def test_no_tool_falls_off_its_shank(corners, held):
+    """In an acute corner no particle is near the top: the topmost is held."""
+    made = tool.Tool(vertices=np.array(corners), removal="volume", density=STEEL.density, **TOOL_PACKING)
+    assert made.held == held and made.fixed[np.argmax(made.positions[:, 1])] and not made.fixed.all()
+    made.erosion.wear(np.where(made.positions[:, 1] < 1e-3, 2 * made.volumes, 0.0))
+    assert 0 < (~made.erosion.alive).sum() < 30 and len(made.erosion.detached()) < 10
+    assert (made.fixed.sum() > 20) == held
+
+
+def test_how_far_particles_do_not_reach_into_a_sharp_tip():
+    wedge = np.array([(0, 0), (4e-3, 0.02), (-4e-3, 0.02)])
+    sharp = tool.Tool(vertices=wedge, removal="volume", density=STEEL.density, **TOOL_PACKING)
+    half = math.atan(0.2)
+    # A disc touches both flanks with its centre r / sin(half angle) above the tip.
+    least, most = (r * (1 / math.sin(half) - 1) for r in (0.35e-3, 0.55e-3))
+    assert least < sharp.blunted < most
+
+
 def within_reach(made, radius):
     """Inner particles that a disc of this radius (m) can touch without overlap with any other particle."""
     alive = np.flatnonzero(made.erosion.alive)

@@ -217,6 +217,18 @@ def test_forces_while_the_tool_cuts_are_those_of_its_stages(tmp_path):
     assert "while it cuts" in key_results.key_results(run).html()
 
 
+@pytest.mark.parametrize("first, shift, words", [
+    (300.0, [10, 18, 19.5, 20], "3 turns"), (300.0, [20, 20], "1 turn"), (400.0, [-5, -20, -30, -40], "4 turns"),
+    (400.0, [13, -2, -56, -57], "3 turns"), (300.0, [10], "not known")])
+def test_peaks_of_turns_level_off_up_or_down(tmp_path, first, shift, words):
+    """A pick hotter than the water cools from turn to turn."""
+    folder = make_run(tmp_path / "run")
+    parameters(folder, tool_temperature=first)
+    rows = [f"{k + 1},{first + change}" for k, change in enumerate(shift)]
+    (folder / "turns.csv").write_text("\n".join(["turn [-],peak [K]", *rows]) + "\n", encoding="utf-8")
+    assert key_results.levelling(RunFolder(folder)) == words
+
+
 @pytest.mark.parametrize("size", [1.0, 0.1])
 def test_pictures_of_the_tip_are_as_small_as_the_tool(tmp_path, size):
     """Made up 6 x 8 mm, and a tenth of that. They show the tip, and no more than twice the tool."""

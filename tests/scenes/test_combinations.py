@@ -185,7 +185,10 @@ def test_rubbed_segments_are_the_hot_ones_and_wear_by_their_own_temperature(of_s
 
 
 def test_vtk_shows_temperatures_of_facets_at_their_vertices(of_segments):
-    shown = vtk_field(sorted((of_segments.out / "vtk").glob("tool.*.vtp"))[-1], "temperature")
+    file = sorted((of_segments.out / "vtk").glob("tool.*.vtp"))[-1]
+    assert np.array_equal(vtk_field(file, "connectivity").reshape(-1, 2), last_snapshot(of_segments.out)["tool_facets"])
+    assert np.array_equal(vtk_field(file, "offsets"), 2 * (1 + np.arange(value(of_segments, "facets"))))
+    shown = vtk_field(file, "temperature")
     nodes = last_snapshot(of_segments.out)["temperature"]
     assert len(shown) == len(last_snapshot(of_segments.out)["tool_vertices"])
     assert shown.min() == pytest.approx(293.15, abs=0.01) and 293.2 < shown.max() <= nodes.max() + 1e-6

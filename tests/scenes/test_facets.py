@@ -94,6 +94,8 @@ def test_the_segments_cut_and_wear_and_balances_close(worn):
     assert (worn.out / "report.html").stat().st_size > 0
     # At 30,000 times the face recedes faster than rock slides on it, and the run says so.
     assert value(worn, "recession_per_slip") > 1
+    slow = worn.summary["parameters"]["wear_acceleration"] * 0.1 / value(worn, "recession_per_slip")
+    assert value(worn, "trusted_wear_acceleration") <= slow * (1 + 1e-9)
     assert any("Use wear_acceleration = " in line and "at most instead of 30000" in line
                for line in worn.summary["warnings"])
 
@@ -118,9 +120,9 @@ def test_the_history_shows_working_hours(worn):
             if shot["stage"] == 0][-1]
     new, gone = (vertices[vertices[:, 1] < SMALL["depth_of_cut"], 0].max()
                  for vertices in (run.model["tool_vertices"], left["tool_vertices"]))
-    way = (new - gone) / 4.0
-    step = value(worn, "time_step")
-    assert value(worn, "working_time") == pytest.approx(1e-3, abs=4 * step)
+    way, step = (new - gone) / 4.0, value(worn, "time_step")
+    free = run.parameter("approach") / 4.0
+    assert value(worn, "working_time") == pytest.approx(1e-3 - free, abs=4 * step)
     assert way >= 0 and value(worn, "simulated_time") == pytest.approx(1e-3 + way, abs=4 * step)
 
 
@@ -170,6 +172,19 @@ def test_a_tool_that_the_shank_cannot_hold_is_said(worn, tmp_path):
     assert not np.load(run.out / "model.npz")["tool_fixed"].any()
     said, unsaid = ([line for line in one.summary["warnings"] if "holds no facet" in line] for one in (run, worn))
     assert len(said) == 1 and not unsaid
+    # Of particles one is held in any case. They do not fill the corner that cuts.
+    del given["reshape"]
+    given["depth_of_cut"] = 1.5e-3
+    discs = run_script(SEGMENTS, *arguments({**given, "tool": "particles", "outline": file, "start_up": 1e-4,
+                                             "cycles": 0, "report": "false", "out": tmp_path / "discs"}),
+                       out=tmp_path / "discs")
+    assert discs.code == 0, discs.stderr
+    held, low = (np.load(discs.out / "model.npz")[name] for name in ("tool_fixed", "tool_positions"))
+    low = (low[:, 1] - np.load(discs.out / "model.npz")["tool_radii"]).min()
+    assert 1 <= held.sum() < 5 and low > 0.05 * given["depth_of_cut"]
+    assert any(f"the shank holds {held.sum()} of the tool's {len(held)} particles" in line
+               for line in discs.summary["warnings"])
+    assert any(f"ends {low:.2g} m above the tip" in line for line in discs.summary["warnings"])
 
 
 def test_stopped_and_resumed_equals_never_stopped(worn, tmp_path):

@@ -42,6 +42,7 @@ def test_a_rock_of_the_library_is_cut_in_space(tmp_path):
 
 def test_help_shows_it():
     run = run_script(ROOT / "yade_scripts/uniaxial.py", "--help")
+    assert "length of the specimen, along the loading" in run.stdout and "across the loading" in run.stdout
     assert run.code == 0 and "--rock NAME|FILE" in run.stdout.partition("\nbonds:")[2].split("\n\n")[0]
     assert "of each platen; with a rock of known strength and E by their ratio, unless it is given" in run.stdout
 

@@ -157,7 +157,7 @@ def test_a_cut_ends_once_its_mean_force_is_known(tmp_path):
     assert 0 < known <= 0.5 and 20 * 2.5e-3 < history(run.out)["distance [m]"][-1] < 0.19
     assert abs(run.summary["balances"]["energy"]["residual"]) < 0.03 * run.summary["balances"]["energy"]["tool_work"]
     again = steady_cut(tmp_path / "short", **{**fast, "cut_length": 0.01})
-    assert "the mean cutting force has an error that this record is too short to tell, and was to be known to 50 %" in (
+    assert "the mean cutting force is of a record too short to rely on its error, and was to be known to 50 %" in (
         again.stderr)
     assert again.summary["results"]["mean_cutting_force_standard_error"]["value"] is None
 

@@ -24,6 +24,8 @@ def test_a_tooth_with_a_flat_lies_the_same_whatever_vertex_its_outline_begins_wi
     # Discs of 0.5 mm, 2 mm above the path, up to where the plane that rises from the tip reaches them.
     least = -1e-3 + (2e-3 + 0.5e-3 / math.cos(math.radians(20))) / math.tan(math.radians(20))
     assert first["steady"] == [-1e-3 + 1e-3 * k < least for k in range(14)]
+    # The heel of a flat that leans is lower, and 4 mm behind the edge that cuts.
+    assert placed["leaning flat"] == first["steady"]
 
 
 def test_a_pick_that_leans_forwards_starts_clear_of_its_entry(placed):

@@ -87,7 +87,7 @@ def crack_tile(run):
         return None
     cracks, at_peak = ({kind: run.result(f"{kind}_cracks{when}") for kind in ("tensile", "shear")
                         if math.isfinite(run.result(f"{kind}_cracks{when}"))} for when in ("", "_at_peak"))
-    remark = f", {' + '.join(map(number, at_peak.values()))} at the peak" if at_peak else ", at the end"
+    remark = f", {' + '.join(map(number, at_peak.values()))} at the peak" if at_peak else ", in all rock that was cut"
     return ("cracks", " + ".join(map(number, cracks.values())), " + ".join(cracks) + remark) if cracks else None
 
 
@@ -117,12 +117,14 @@ def heat_tiles(run):
 
 
 def levelling(run):
-    """Turns until the peak is within 5 % of its final rise."""
+    """Turns until the peak is within 5 % of its final rise above the new tool's temperature, or of its fall below."""
     turn, peak = run.table("turns.csv", "turn", "peak")
     if len(peak) < 2:
         return "not known"
-    rise = peak - run.parameter("tool_temperature", 0.0)
-    return f"{int(turn[np.argmax(rise >= 0.95 * rise[-1])])} turns"
+    change = abs(peak - run.parameter("tool_temperature", 0.0))
+    before = np.flatnonzero(abs(change - change[-1]) > 0.05 * change[-1])
+    count = int(turn[before[-1] + 1 if len(before) else 0])
+    return f"{count} turn" + "s" * (count != 1)
 
 
 def strength_tiles(run):
@@ -139,7 +141,8 @@ def sliding_tiles(run):
     given, returned, deviation = (run.result(name) for name in ("k_given", "k_returned", "k_deviation"))
     if not math.isfinite(given):
         return []
-    return [tile(given, "k given", number(given)), tile(returned, "k returned", number(returned), "w H / (p s)"),
+    return [tile(given, "k given", number(given)),
+            tile(returned, "k returned", number(returned), "what the law needs for this depth"),
             tile(deviation, "k off by", percent(deviation, 1.0), "of what was given"),
             result(run, "worn depth", "worn_depth", f"by the law {quantity(run.result('expected_depth'), 'm')}"),
             result(run, "descent of the block", "descent", "in whole particles"), result(run, "pressure", "pressure"),

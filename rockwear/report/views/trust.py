@@ -1,4 +1,4 @@
-"""How far the acceleration of wear can be trusted, by the two rules of [Rocky]."""
+"""How far the acceleration of wear can be trusted, by the two rules of [Rocky] and the recession of facets."""
 import math
 
 import numpy as np
@@ -26,6 +26,9 @@ def in_words(run):
     # Of a tool that keeps its shape no piece ever goes.
     goes = f", and {piece} wears away in {number(events)} contact events" if math.isfinite(events) else ""
     enough = f" and {wear_statistics.ENOUGH_EVENTS} events" if goes else ""
+    recession = run.result("recession_per_slip")
+    recedes = f" Its face recedes by {number(recession)} of the way that rock slides on it." if recession > 0 else ""
+    slow = f" and a recession of {wear_statistics.RECESSION:g} at most" if recedes else ""
     trusted, factor = run.result("trusted_wear_acceleration"), run.parameter("wear_acceleration")
     longer = ""
     if trusted < factor:
@@ -33,8 +36,8 @@ def in_words(run):
     elif not math.isfinite(error):
         longer = ", and run longer to tell the distribution"
     return (f"Wear is accelerated {quantity(factor, '-')} times. Sampled in "
-            f"{quantity(run.result('simulated_time'), 's')}, its distribution along the tool {known}{goes}. For an "
-            f"error of {percent(run.parameter('wear_tolerance'), 1.0)}{enough}, accelerate at most "
+            f"{quantity(run.result('simulated_time'), 's')}, its distribution along the tool {known}{goes}.{recedes} "
+            f"For an error of {percent(run.parameter('wear_tolerance'), 1.0)}{enough}{slow}, accelerate at most "
             f"{number(trusted)} times{longer}.")
 
 

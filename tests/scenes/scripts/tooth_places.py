@@ -30,15 +30,21 @@ def track(vertices):
     return dredging.Track(SimpleNamespace(**parameters.read(dredging.groups(), [])), vertices)
 
 
+def left_out(vertices):
+    """What a steady cut leaves out of DISCS where it begins."""
+    return steady_cut.above_groove(DISCS, vertices, 0.0, slope=math.radians(20), edge=-SIZE["tip_radius"]).tolist()
+
+
 def places(vertices):
     """What is written of one outline."""
     pick = track(vertices)
-    return {"steady": steady_cut.above_groove(DISCS, vertices, 0.0, math.radians(20)).tolist(),
+    return {"steady": left_out(vertices),
             "pick": [*pick.tip, pick.pivot[1], pick.ahead]}
 
 
 flat = [places(np.roll(turned, begin, axis=0)) for turned in (FLAT, FLAT[::-1]) for begin in range(len(FLAT))]
 leaning = track(tooth(**SIZE, rake=-math.radians(30))).ahead
 with open(sys.argv[1], "w", encoding="utf-8") as out:
-    json.dump({"flat": flat, "leaning": leaning}, out)
+    json.dump({"flat": flat, "leaning": leaning, "leaning flat": left_out(tooth(**SIZE, rake=0.1, wear_flat=4e-3,
+                                                                                flat_angle=0.09))}, out)
 os._exit(0)
