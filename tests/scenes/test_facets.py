@@ -174,14 +174,14 @@ def test_a_tool_that_the_shank_cannot_hold_is_said(worn, tmp_path):
     assert len(said) == 1 and not unsaid
     # Of particles one is held in any case. They do not fill the corner that cuts.
     del given["reshape"]
-    given["depth_of_cut"] = 1.5e-3
+    file.write_text("0,0\n0.001,0.03\n-0.012,0.026\n-0.003,0.005\n", encoding="utf-8")
     discs = run_script(SEGMENTS, *arguments({**given, "tool": "particles", "outline": file, "start_up": 1e-4,
                                              "cycles": 0, "report": "false", "out": tmp_path / "discs"}),
                        out=tmp_path / "discs")
     assert discs.code == 0, discs.stderr
     held, low = (np.load(discs.out / "model.npz")[name] for name in ("tool_fixed", "tool_positions"))
     low = (low[:, 1] - np.load(discs.out / "model.npz")["tool_radii"]).min()
-    assert 1 <= held.sum() < 5 and low > 0.05 * given["depth_of_cut"]
+    assert 1 <= held.sum() < 5 and low > 0.05 * SHORT["depth_of_cut"]
     assert any(f"the shank holds {held.sum()} of the tool's {len(held)} particles" in line
                for line in discs.summary["warnings"])
     assert any(f"ends {low:.2g} m above the tip" in line for line in discs.summary["warnings"])
