@@ -61,7 +61,8 @@ def number(value):
         return str(value)
     if not math.isfinite(value):
         return "not known" if math.isnan(value) else str(value)
-    return f"{value:.0f}" if abs(value) >= 1000 else f"{value:.3g}"
+    # -0.0 is 0.
+    return f"{value:.0f}" if abs(value) >= 1000 else f"{value + 0.0:.3g}"
 
 
 def shown_unit(unit, size):

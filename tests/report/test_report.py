@@ -188,3 +188,7 @@ def test_cracks_lie_across_their_bonds():
     positions, radii = np.array([[0.0, 0], [1.6, 0], [9, 0]]), np.array([1.0, 0.5, 1])
     segment, = shapes.cracks(positions, radii, np.array([[0, 1], [1, 2]]))
     np.testing.assert_allclose(np.sort(segment, axis=0), [[0.8, -0.5], [0.8, 0.5]])
+
+
+def test_nothing_has_no_sign():
+    assert page.number(-0.0) == "0" and page.quantity(-0.0, "J/m") == "0 J/m" and page.number(-2.5e-3) == "-0.0025"

@@ -40,7 +40,7 @@ def summary_line(run):
         parameter(run, "depth_of_cut", "m", "depth of cut {}"),
         parameter(run, "distance", "m", "{} of the laboratory test"),
         found(run, "simulated_distance", "m", "simulated as {}"), found(run, "simulated_time", "s", "{} simulated"),
-        parameter(run, "cycles", "-", "{} turns") if turns(run) else "",
+        parameter(run, "cycles", "-", "{} turn" + "s" * (run.parameter("cycles") != 1)) if turns(run) else "",
         parameter(run, "time_scale", "-", "mechanics {} times as fast as heat", (1,)),
         parameter(run, "wear_acceleration", "-", "wear accelerated {} times", (0, 1)),
         parameter(run, "grading_factor", "-", "rock graded up to {} times as coarse", (1,)),
