@@ -97,7 +97,7 @@ campaign-worn: setup-sweep ## a tool worn by its own cut, and how it cuts then (
 campaign-granular: setup-sweep ## angle of repose and vibrated tube (an hour; resumes)
 	$(PYTHON) -m calibration.campaigns.granular "$(OUT)/campaign-granular" $(WHERE)
 
-campaign-slow: setup-sweep ## cuts at 8 to 1 m/s that a source makes at 0.04 (hours; resumes); FULL=--full: at 0.04, too
+campaign-slow: setup-sweep ## cuts at 8 m/s down to the 0.04 of their source (hours; resumes); FULL=--full: all 40 mm slowly
 	$(PYTHON) -m calibration.campaigns.slow "$(OUT)/campaign-slow" $(FULL) $(WHERE)
 
 campaign-toughness: setup-sweep ## toughness of four rocks over the size of the specimen (an hour; resumes)

@@ -135,6 +135,10 @@ class Presets(ABC):
         Raises ParameterError for a file that cannot be used.
         """
 
+    def warnings(self, value, values):
+        """Lines on what is not to be relied on where they give defaults. values: of all parameters, as of `read`."""
+        return []
+
 
 class Fixed(Presets):
     """The same values {name: value} wherever a flag is set."""

@@ -42,6 +42,9 @@ RADII = {"plane": ("radius_min", "radius_max"), "space": ("radius",)}
 """Names of a part's resolution, which are parameters of the scenes too."""
 DIMENSION = {"plane": 0, "space": 1}
 """Place of a part's power in size_power."""
+MEASURED_WITHIN = {False: 2.5, True: 5.0}
+"""Factor of the size within which a rock is taken for the one that was measured: without powers of its strengths, and
+with them."""
 OPTIONAL = "rock_density", "rotation", "crushing_hardening"
 """Parameters that a file may leave out: the scene's defaults count."""
 
@@ -287,6 +290,23 @@ class RockPresets(Presets):
                 f"{' and the '.join(rock.parts)} alone")
         return rock, kind
 
+    def warnings(self, value, values):
+        rock, kind = self.read(value, values)
+        part = rock.parts[kind]
+        ratio = values.get("scale_factor", 1.0) * self._ratio(part, kind, values)
+        measured = size(part.resolution)
+        within = MEASURED_WITHIN[any(name.endswith("_power") for name in part.parameters)]
+        if not part.measured or self.only is not None or 1 / within <= ratio <= within:
+            return []
+        way, factor = ("larger", ratio) if ratio > 1 else ("smaller", 1 / ratio)
+        return [f"the rock's particles are {factor:.3g} times {way} than those of {measured:.3g} m in mean radius that "
+                f"{rock.name} was measured with: what is known of its strength does not hold at this size"]
+
+    @staticmethod
+    def _ratio(part, kind, values):
+        """Mean radius of the scene over that of the rock's file."""
+        return size({name: values[name] for name in RADII[kind]}) / size(part.resolution)
+
     def defaults(self, value, values):
         """{name: value} that are right at the radii of the scene."""
         rock, kind = self.read(value, values)
@@ -296,7 +316,7 @@ class RockPresets(Presets):
             require(name in values, "rock", f"{value}, {kind}.parameters.{name} = {found[name]}",
                     "a known parameter (--help lists them)")
         factor = values.get("scale_factor", 1.0)
-        ratio = size({name: values[name] for name in RADII[kind]}) / size(part.resolution)
+        ratio = self._ratio(part, kind, values)
         for name in found:
             own = self.declared[name].size_power[DIMENSION[kind]]
             power = own + part.parameters.get(f"{name}_power", 0.0)

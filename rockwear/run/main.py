@@ -65,7 +65,7 @@ def main(name, declared, make_scene):
             checkpoint.load(folder / "checkpoint", identity)
         scene = make_scene(values)
         _check_steps(scene, values, declared)
-        run = Run(name, scene, values, folder, identity, began)
+        run = Run(name, scene, values, folder, identity, began, parameters.warnings(declared, values))
         run.prepare()
     except ParameterError as error:
         print(f"error: {error}", file=sys.stderr)
@@ -125,9 +125,10 @@ def _check_files(folder, values, declared):
 
 
 class Run:
-    """Runs a scene through its stages and writes its folder."""
+    """Runs a scene through its stages and writes its folder. said: `parameters.warnings` of its values."""
 
-    def __init__(self, name, scene, values, folder, identity, began):
+    def __init__(self, name, scene, values, folder, identity, began, said):
+        self.said = said
         self.name, self.scene, self.values, self.folder, self.began = name, scene, values, folder, began
         self.identity = identity
         self.stopped_by = None
@@ -199,7 +200,7 @@ class Run:
                     self.ended = ended
                     self._snapshot()
                     self._checkpoint()
-                warnings = self.scene.output.warnings()
+                warnings = self._warnings()
                 self._write_summary(ended, code, warnings)
                 self.scene.output.write_shape(self.folder)
                 for line in warnings:
@@ -216,9 +217,12 @@ class Run:
                 # Not a good run, even on a disk too full to say why.
                 with suppress(*BROKEN):
                     (self.folder / "summary.json").unlink(missing_ok=True)
-                    self._write_summary(_line(error), 1, self.scene.output.warnings())
+                    self._write_summary(_line(error), 1, self._warnings())
             return 1
         return code
+
+    def _warnings(self):
+        return [*self.said, *self.scene.output.warnings()]
 
     def _on_signal(self, number, frame):
         self.stopped_by = number

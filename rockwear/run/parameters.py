@@ -75,6 +75,12 @@ def defaults(groups, values):
     return found
 
 
+def warnings(groups, values):
+    """Lines on what in given values is not to be relied on; values: all, as of `read`."""
+    return [line for name, parameter in flat(groups).items() if parameter.presets and values[name]
+            for line in parameter.presets.warnings(values[name], values)]
+
+
 def _advice(name, known):
     """The rule that an unknown name breaks."""
     renamed = [new for new in RENAMED.get(name, ()) if new in known]

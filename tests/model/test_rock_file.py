@@ -111,6 +111,29 @@ def test_values_are_right_at_the_radii_that_a_scale_factor_makes(tmp_path):
     assert {name: found[name] for name in expected} == pytest.approx(expected)
 
 
+def test_a_rock_at_a_size_that_was_not_measured_is_said(tmp_path):
+    """Beyond a factor of 2.5, and of 5 where the file says how its strengths follow the size."""
+    def said(groups, *words):
+        line = ["--rock", str(written(tmp_path, data)), *(str(word) for word in words)]
+        return parameters.warnings(groups, parameters.read(groups, line))
+
+    data = copy.deepcopy(ROCK)
+    assert said(PLANE, "--radius_min", 2e-3, "--radius_max", 3e-3) == []
+    larger, = said(PLANE, "--radius_min", 3e-3, "--radius_max", 4.5e-3)
+    smaller, = said(PLANE, "--radius_min", 2.5e-4, "--radius_max", 3.75e-4)
+    assert larger.startswith("the rock's particles are 3 times larger than those of 0.00125 m in mean radius that ")
+    assert smaller.startswith("the rock's particles are 4 times smaller than ")
+    assert parameters.warnings(PLANE, read(PLANE, "--radius_min", 3e-3, "--radius_max", 4.5e-3)) == []
+    # A scene that takes contacts alone, and a part that nothing was measured of.
+    assert said([BLOCK, LOOSE], "--radius", 6e-2) == said(SPACE, "--radius", 6e-2) == []
+    scaled = [*PLANE, Parameter("scale_factor", 1.0, "", above_zero, "on the radii")]
+    assert said(scaled, "--scale_factor", 2.4) == []
+    assert "are 2.6 times larger" in said(scaled, "--scale_factor", 2.6)[0]
+    data["plane"]["parameters"] = COHESIVE
+    assert said(scaled, "--scale_factor", 4.9) == []
+    assert "are 5.1 times larger" in said(scaled, "--scale_factor", 5.1)[0]
+
+
 @pytest.mark.parametrize("law, radius, expected", [
     ("damage", 2.0, {"Rn": 2e5, "kn": 2e10, "H": 1e10}), ("padova", 2.0, {
         "padova_m": 2e8 / 2**(1 / 3), "padova_r": -2e5, "padova_eta": 0.8, "padova_cohesion": 2.5e5,

@@ -74,11 +74,14 @@ def test_a_rock_that_changes_or_moves_is_refused_by_a_resumed_run(tmp_path):
         rock.write_text(json.dumps({**data, **values}), encoding="utf-8")
 
     write()
-    first = tooth_cycles(tmp_path / "out", rock=rock, start_up=1e-4, cycles=0, report="false")
+    given = dict(rock=rock, radius_min=3e-3, radius_max=4.5e-3, start_up=1e-4, cycles=0, report="false")
+    first = tooth_cycles(tmp_path / "out", **given)
     assert first.code == 0, first.stderr
+    # Its discs are three times as large as those that it was measured with.
+    assert any("are 3 times larger than those" in line for line in first.summary["warnings"])
     assert first.summary["parameters"]["kt"] == 1e10 and first.summary["parameters"]["rock"] == str(rock)
     assert list(first.summary["files"]) == ["rock"]
-    resumed = words(rock=rock, start_up=1e-4, cycles=0, report="false", out=tmp_path / "out", resume="true")
+    resumed = words(**given, out=tmp_path / "out", resume="true")
     write(source="another report")
     said = refusals(ROOT / "yade_scripts/tooth_cycles.py", tmp_path, [resumed])
     rock.unlink()
