@@ -3,8 +3,9 @@ import os
 
 import pytest
 
-LONGEST = ("test_tooth_cycles", "test_cutting_3d", "test_temperatures", "test_laboratory", "test_combinations",
-           "test_facets")
+LONGEST = ("test_tooth_cycles", "test_steady_cut", "test_cutting_3d", "test_temperatures", "test_laboratory",
+           "test_combinations", "test_facets", "test_campaign_worn", "test_arc_window", "test_absorbing",
+           "test_two_disc", "test_hard_cases")
 """Modules that a worker is to begin first, so that none is left to one of them at the end."""
 
 
