@@ -107,13 +107,12 @@ class BondLog(Engine):
     def state(self):
         return {"status": self.status.copy(), "energy_released": self.energy_released,
                 "energy_crushed": self.energy_crushed,
-                "cracks": np.array(self.cracks, float).reshape(-1, len(Crack._fields))}
+                "cracks": crack_array(self.cracks)}
 
     def restore(self, state):
         self.status = state["status"].copy()
         self.energy_released, self.energy_crushed = float(state["energy_released"]), float(state["energy_crushed"])
-        self.cracks = [Crack(*row[:7], int(row[7]), row[8], int(row[9]), int(row[10]))
-                       for row in state["cracks"].tolist()]
+        self.cracks = cracks_of(state["cracks"])
         self.counted = crack_counts([])
 
     def log(self):
@@ -122,6 +121,16 @@ class BondLog(Engine):
         new = crack_counts(self.cracks[sum(modes):])
         self.counted = {name: (before + number, unit) for before, (name, (number, unit)) in zip(modes, new.items())}
         return dict(self.counted)
+
+
+def crack_array(cracks):
+    """(cracks, fields of Crack) numbers."""
+    return np.array(cracks, float).reshape(-1, len(Crack._fields))
+
+
+def cracks_of(array):
+    """[Crack] of what `crack_array` gave."""
+    return [Crack(*row[:7], int(row[7]), row[8], int(row[9]), int(row[10])) for row in array.tolist()]
 
 
 def crack_counts(cracks):

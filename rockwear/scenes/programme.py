@@ -7,7 +7,7 @@ import numpy as np
 from yade import O
 
 from rockwear.engines import access
-from rockwear.engines.bond_log import Crack
+from rockwear.engines.bond_log import crack_array, cracks_of
 from rockwear.kernels.rigid_motion import Straight
 
 
@@ -180,12 +180,12 @@ class StartState:
 
     def state(self):
         """What must survive a restart."""
-        return {"kept": self.kept, "cracks": np.array(self.cracks, float).reshape(-1, len(Crack._fields))}
+        return {"kept": self.kept, "cracks": crack_array(self.cracks)}
 
     def restore(self, state):
         """Take back what `state` gave."""
         self.kept = state.get("kept", {})
-        self.cracks = [Crack(*row) for row in state["cracks"].tolist()]
+        self.cracks = cracks_of(state["cracks"])
 
     def save(self, directory, folder):
         """Copy the file into `directory` of a checkpoint of the run in `folder`."""
