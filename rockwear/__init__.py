@@ -10,4 +10,4 @@ References, and the keys that docstrings, --help and reports use for them:
 [Bahaaddini 2018]  M. Bahaaddini, M. Rahimi: Distinct element modelling of the mechanical behaviour of intact rocks
                    using Voronoi tessellation model. International Journal of Mining and Geo-Engineering, 2018.
 """
-__version__ = "0.30.0"
+__version__ = "0.31.0"

@@ -28,7 +28,7 @@ from rockwear.kernels.archard import BRINELL, KELVIN, MET71, MET91
 from rockwear.kernels.checks import ParameterError, finite, positive, require
 from rockwear.kernels.files import read_cells
 from rockwear.kernels.wear_fitting import LaboratoryTest
-from rockwear.kernels.wear_laws import WEAR_LAWS, PowerLaw, SumOfModes
+from rockwear.kernels.wear_laws import NORMAL, WEAR_LAWS, PowerLaw, SumOfModes
 from rockwear.report import plots
 
 EXAMPLE = Path(__file__).with_name("wear_tests.csv")
@@ -102,13 +102,15 @@ def _measured(row, mu, brinell):
         for name in ("force", "area"):
             require(name in row, name, "nothing", "given in every row without a pressure")
         pressure = row["force"] / row["area"]
-    pressure_error = of["pressure"] or np.hypot(of["force"], of["area"])
+    # A pressure without an error of its own, beside an area, is the quotient as well.
+    quotient = "pressure" not in row or ("area" in row and "force" in row and not of["pressure"])
+    pressure_error = np.hypot(of["force"], of["area"]) if quotient else of["pressure"]
     friction, friction_error = mu * pressure, pressure_error
     if "friction" in row:
         require("force" in row, "force", "nothing", "given with friction")
         friction = pressure * row["friction"] / row["force"]
         # Force over area times friction over force: the force is in neither.
-        friction_error = np.hypot(of["friction"], of["area"]) if not of["pressure"] else np.hypot.reduce(
+        friction_error = np.hypot(of["friction"], of["area"]) if quotient else np.hypot.reduce(
             [of["friction"], of["force"], of["pressure"]])
     hardness, hardness_error = _hardness(row, of, brinell)
     require(pressure < hardness, f"{'pressure' if 'pressure' in row else 'force / area'} in line {row['line']}",
@@ -205,15 +207,16 @@ def lines(found):
 
 
 def draw(found, file):
-    """Worn depth over sliding distance against p / H: tests with their errors, and the law as a line or points."""
+    """Worn depth over sliding distance against the law's load, p / H or p_T / (mu H): tests with their errors, and the
+    law as a line or points."""
     figure, (axes,) = plots.canvas(6.5, 4.5)
     for number, (steel, one) in enumerate(found.items()):
-        tests, colour = one["tests"], f"C{number}"
-        x, rate = 1e3 * tests.pressure / tests.hardness, 1e6 * tests.depth / tests.distance
-        axes.errorbar(x, rate, yerr=rate * tests.rate_error,
-                      xerr=x * np.hypot(tests.pressure_error, tests.hardness_error), fmt="o", color=colour, capsize=3,
-                      zorder=3)
-        if isinstance(one["law"], SumOfModes):
+        tests, colour, several = one["tests"], f"C{number}", isinstance(one["law"], SumOfModes)
+        single = one["law"].modes[0] if several else one["law"]
+        load, error = single.load(tests)
+        x, rate = 1e3 * load, 1e6 * tests.depth / tests.distance
+        axes.errorbar(x, rate, yerr=rate * tests.rate_error, xerr=x * error, fmt="o", color=colour, capsize=3, zorder=3)
+        if several:
             words = ", ".join(f"{k:.3g}" for k in one["fit"].k)
             axes.plot(x, 1e6 * one["fit"].depth / tests.distance, "x", color=colour,
                       label=f"{steel or 'tests'}: k = {words}")
@@ -222,7 +225,8 @@ def draw(found, file):
         law = one["law"]
         axes.plot(grid, 1e6 * law.k * (1e-3 * grid)**law.exponent, color=colour,
                   label=f"{steel or 'tests'}: k = {plus_minus(law.k, one['fit'].uncertainty[0])}")
-    axes.set(xlabel="pressure / hardness, 1e-3", ylabel="worn depth / distance, µm/m", xlim=(0, None), ylim=(0, None))
+    load = "pressure / hardness" if single.force == NORMAL else "friction stress / (µ hardness)"
+    axes.set(xlabel=f"{load}, 1e-3", ylabel="worn depth / distance, µm/m", xlim=(0, None), ylim=(0, None))
     axes.legend(frameon=False)
     figure.savefig(file, dpi=110)
 

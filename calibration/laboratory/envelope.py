@@ -11,6 +11,7 @@ envelope.md, envelope.png and provenance.json into DIR.
 """
 import argparse
 import json
+import math
 import sys
 from pathlib import Path
 
@@ -79,6 +80,15 @@ def _plain(fit):
 # ---- what is written
 
 
+def _numbers(found):
+    """The same, with None for what is not known: JSON has no nan."""
+    if isinstance(found, dict):
+        return {name: _numbers(one) for name, one in found.items()}
+    if isinstance(found, (list, tuple)):
+        return [_numbers(one) for one in found]
+    return None if isinstance(found, float) and not math.isfinite(found) else found
+
+
 def draw(ours, laboratory):
     """Figure of sigma1 over sigma3: tests, both fits, and the laboratory's."""
     shown = [envelope_figure.of_packings("simulated", palette.SIMULATED, ours["points"], ours["tensile_strengths"],
@@ -120,8 +130,9 @@ def page(ours, laboratory):
 
 
 def _pair(fit, first, second):
-    return [f"{fit[name]['value'] / scale:.3g} ± {fit[name]['half_width'] / scale:.2g}"
-            for name, scale in ((first, MPA), (second, 1.0))]
+    return [f"{fit[name]['value'] / scale:.3g}" + (
+        f" ± {fit[name]['half_width'] / scale:.2g}" if math.isfinite(fit[name]["half_width"]) else "")
+        for name, scale in ((first, MPA), (second, 1.0))]
 
 
 def _curve(fit):
@@ -141,6 +152,9 @@ def main(words):
     try:
         confinements = listed(numbers(strength_table.CONFINEMENT)("confinements", given.confinements, "Pa"))
         seeds = [int(seed) for seed in listed(numbers(integer(0))("seeds", given.seeds, ""))]
+        for name, found in (("confinements", confinements), ("seeds", seeds)):
+            require(len(set(found)) == len(found), name, getattr(given, name), "each given once")
+        require(len(confinements) > 1, "confinements", given.confinements, "at least two", "Pa")
         require(len(rest) % 2 == 0 and all(name.startswith("--") for name in rest[::2]), "arguments", " ".join(rest),
                 "pairs of --name value")
         rows = strength_table.read(given.points, "points") if given.points else []
@@ -156,7 +170,8 @@ def main(words):
         print(f"error: {error}", file=sys.stderr)
         return 2 if error.code == 2 else 1
     written = given.folder / "envelope.json", given.folder / "envelope.png"
-    written[0].write_text(json.dumps({"simulated": ours, "laboratory": laboratory}, indent=1) + "\n", encoding="utf-8")
+    written[0].write_text(json.dumps(_numbers({"simulated": ours, "laboratory": laboratory}), indent=1,
+                                     allow_nan=False) + "\n", encoding="utf-8")
     with matplotlib.rc_context(plots.STYLE):
         draw(ours, laboratory).savefig(written[1])
     generated.record(*written)

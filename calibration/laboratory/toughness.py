@@ -80,7 +80,8 @@ class ToughnessTest(SpecimenTest):
         x = self.rock.positions[:, 0] / self.v.size - 0.6
         row = self._on_the_load_line()
         left, right = (np.flatnonzero(row & (abs(x - place) < PIN)) for place in (-PIN_PLACE, PIN_PLACE))
-        require(len(left) and len(right), "size", self.v.size, "large enough for a disc in each pin", "m")
+        require(len(left) and len(right), "size", self.v.size, "larger, or of another seed: no disc on the load line "
+                f"is in a pin, {2 * PIN * self.v.size:.3g} m long", "m")
         return left, right
 
     def _place_gauge(self):

@@ -4,10 +4,11 @@
     python3 -m calibration.sweep TABLE SCRIPT [--out DIR] --slurm FILE | --read
 
 A row is a run of SCRIPT in DIR/ROW, named by the table's description, with the values of the row as its parameters; its
-words go to DIR/ROW.log. All rows are checked before the first one runs. The same command again keeps the rows that have
-finished with this version of rockwear and resumes the others from their checkpoints. Writes sweep.html and sweep.csv
-into DIR. Exit code 0: all rows are done; 1: some failed, each said in one line; 2: bad input, said in one line; 128 +
-n: stopped by signal n. --read runs nothing and gathers what there is: 1 where rows are missing.
+words go to DIR/ROW.log. Each value of all rows is checked by its rule before the first one runs; files, and values
+that do not fit together, once their row begins. The same command again keeps the rows that have finished with this
+version of rockwear and resumes the others from their checkpoints. Writes sweep.html and sweep.csv into DIR. Exit code
+0: all rows are done; 1: some failed, each said in one line; 2: bad input, said in one line; 128 + n: stopped by signal
+n. --read runs nothing and gathers what there is: 1 where rows are missing.
 
 On a cluster, start `dask scheduler` on one machine and `dask worker ADDRESS --nthreads N` on each, N rows at a time;
 all see the same folders. A worker lost in mid-row costs one checkpoint interval, and the row goes on elsewhere; the

@@ -1,10 +1,13 @@
 """Time series of a run."""
+from yade import O
+
 from rockwear.engines.base import Engine
 from rockwear.engines.history import History
 
 
 class Recorder(Engine):
-    """Rows of named values at a regular interval. `sources`: functions giving {name: (value, unit)}.
+    """Rows of named values at a regular interval, the last of a stage at its end (`close`): each source that takes
+    `elapsed` covers all time. `sources`: functions giving {name: (value, unit)}.
 
     history: that of a recorder which this one follows.
     """
@@ -19,6 +22,11 @@ class Recorder(Engine):
     def act(self):
         found = [item for source in self.sources for item in source().items()]
         self.history.append([f"{name} [{unit}]" for name, (_, unit) in found], [value for _, (value, _) in found])
+
+    def close(self):
+        """The last row of a stage, unless there is one of this step already."""
+        if O.iter > self.last_iteration:
+            self.act()
 
     def columns(self):
         """{name: (rows,) values}."""

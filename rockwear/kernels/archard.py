@@ -27,8 +27,8 @@ class Hardness:
 
     celsius: (n,) increasing temperatures in deg C; brinell: (n,) positive HB in kgf/mm2.
     An instance called with kelvin (scalar or array) returns Pa. Outside the table the value of the nearest row is used,
-    with one warning. Raises ParameterError for temperatures that do not increase, for values that are not finite,
-    hardness not above 0, and lengths that differ.
+    with one warning; nan gives nan. Raises ParameterError for an empty table, temperatures that do not increase or lie
+    below 0 K, values that are not finite, hardness not above 0, and lengths that differ.
     """
 
     def __init__(self, celsius, brinell):
@@ -36,8 +36,9 @@ class Hardness:
         self.pascal = np.atleast_1d(np.asarray(brinell, float)) * BRINELL
         require(self.kelvin.ndim == 1 and self.kelvin.shape == self.pascal.shape, "brinell", np.shape(brinell),
                 f"of the shape of celsius, {np.shape(celsius)}")
-        require(np.all(np.isfinite(self.kelvin)) and np.all(np.diff(self.kelvin) > 0),
-                "celsius", list(np.ravel(celsius)), "finite and increasing", "deg C")
+        require(self.kelvin.size > 0 and np.all(np.isfinite(self.kelvin)) and np.all(np.diff(self.kelvin) > 0)
+                and self.kelvin[0] >= 0, "celsius", list(np.ravel(celsius)),
+                f"one temperature or more, finite, increasing and at least {-KELVIN:g}", "deg C")
         require(np.all(np.isfinite(self.pascal)) and np.all(self.pascal > 0),
                 "brinell", list(np.ravel(brinell)), "finite and greater than 0", "kgf/mm2")
         self._warned = False
@@ -62,7 +63,7 @@ class Hardness:
 
     def nearest(self, kelvin):
         """Hardness (Pa) as by a call, without a warning: for callers that check `leaves` themselves."""
-        found = np.interp(kelvin, self.kelvin, self.pascal)
+        found = np.where(np.isnan(kelvin), np.nan, np.interp(kelvin, self.kelvin, self.pascal))
         return float(found) if found.ndim == 0 else found
 
     def leaves(self, low, high):

@@ -1,4 +1,6 @@
 """Sizes of discs, window and tooth for a cut of a given depth and resolution."""
+import math
+
 from rockwear.kernels.checks import not_negative, positive
 
 DEPTHS = dict(window_behind=2.4, window_ahead=8.0, window_height=6.0, fine_depth=1.6, tooth_height=2.4,
@@ -14,11 +16,13 @@ ROWS = 100
 """Rows of the record while the tool goes on by a depth of cut: twice as many as steady_record.RESOLUTION asks for."""
 
 
-def cut_sizes(depth, discs, *, velocity, blunt=0.0):
+def cut_sizes(depth, discs, *, velocity, blunt=0.0, rake=0.0):
     """{name of a parameter of the steady cut: its value} for `discs` rock discs in a depth of cut.
 
     Rock discs have a mean diameter of depth / discs, those of the tool's surface 0.7 of it. depth: m; velocity: m/s;
-    blunt: m that a round tip or a wear flat makes the tooth wider. Lengths in m, record_period in s, grading_factor
+    blunt: m that a round tip or a wear flat makes the tooth wider, and the window behind it longer where they do not
+    fit in with a depth to spare; rake: rad, below 0 the tooth is wider where its back would not lie half a depth behind
+    the tip. Lengths in m, record_period in s, grading_factor
     without unit. Ours; how a cut depends on it is in calibration/results/steady_cut.md. Raises ParameterError.
     """
     depth, discs = positive("depth_of_cut", depth, "m"), positive("discs_per_depth", discs, "")
@@ -26,5 +30,7 @@ def cut_sizes(depth, discs, *, velocity, blunt=0.0):
     radii = {name: 0.5 * depth * part / discs for name, part in RADII.items()}
     grading = min(max(1.0, LARGEST * depth / radii["radius_max"]), MOST_GRADING)
     lengths = {name: part * depth for name, part in DEPTHS.items()}
-    lengths["tooth_width"] += blunt
+    least = 0.5 * depth + math.tan(max(0.0, -rake)) * lengths["tooth_height"]
+    lengths["tooth_width"] = max(lengths["tooth_width"], least) + blunt
+    lengths["window_behind"] = max(lengths["window_behind"], depth + blunt)
     return {**radii, **lengths, "grading_factor": grading, "record_period": depth / (ROWS * velocity)}

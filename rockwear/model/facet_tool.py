@@ -1,5 +1,6 @@
 """The tool as a closed boundary of facets: segments from an outline, triangles from an STL file or a drawn-out
 outline."""
+import math
 import warnings
 
 import numpy as np
@@ -106,12 +107,12 @@ def incentres(triangles):
     return np.einsum("mk,mkd->md", opposite, triangles) / opposite.sum(axis=1)[:, None]
 
 
-def read_stl(path, *, scale=1.0):
+def read_stl(path, *, scale=1.0, most=math.inf):
     """(vertices (n, 3) m, facets (m, 3)) of an STL file, binary or text, its numbers times `scale`; equal corners are
     one.
 
-    Raises ParameterError (stl) for a file that cannot be read, or a surface that is open, flipped, folded or inside
-    out.
+    Raises ParameterError (stl) for a file that cannot be read, has more than `most` triangles, or a surface that is
+    open, flipped, folded or inside out.
     """
     positive("scale", scale)
     try:
@@ -127,6 +128,7 @@ def read_stl(path, *, scale=1.0):
     except (OSError, RuntimeError, ValueError, AssertionError) as error:
         raise ParameterError("stl", str(path), f"a readable STL file ({str(error).splitlines()[0]})") from None
     require(len(triangles), "stl", str(path), "a file of triangles: it holds none")
+    require(len(triangles) <= most, "stl", f"{path}, {len(triangles)} triangles", f"a tool of at most {most:g}")
     require(np.isfinite(triangles).all(), "stl", str(path), "a file of triangles with finite corners")
     points, number = np.unique(triangles.reshape(-1, 3), axis=0, return_inverse=True)
     try:
@@ -142,4 +144,8 @@ def write_stl(path, vertices, facets):
         from stl.mesh import Mesh
     mesh = Mesh(np.zeros(len(facets), dtype=Mesh.dtype))
     mesh.vectors[:] = np.asarray(vertices)[facets]
-    mesh.save(str(path))
+    mesh.update_normals()
+    with open(path, "wb") as file:
+        # numpy-stl's own header has the time and the path: no two files of one tool would be the same.
+        file.write(b"rockwear, m".ljust(80) + np.uint32(len(facets)).astype("<u4").tobytes())
+        mesh.data.tofile(file)

@@ -5,6 +5,7 @@ from functools import cached_property
 import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
+from scipy.special import gammainc
 
 from rockwear.kernels import packing
 from rockwear.kernels.bond_laws import Cohesive, ElasticBrittle
@@ -24,7 +25,7 @@ ORDERED = 3000
 """Particles above which a packing is ordered along a curve: a step of YADE then takes 0.9 to 0.7 of the time
 (calibration/results/scale.md). With fewer no difference is seen."""
 SCATTER_LIMITS = 0.05, 5.0
-"""Least and largest strength over the mean one where strengths scatter."""
+"""Least and largest strength over the mean of Weibull's law where strengths scatter."""
 BORDER, INSIDE = 4.0, 10
 """Mean radii from a border within which particles lack bonds, or neighbours of such; least number of others."""
 
@@ -233,11 +234,11 @@ class RockAssembly:
         """
         sizes = self.bond_areas if law.by_area else self.strength_factor
         if weibull_modulus:
-            drawn = np.random.default_rng([seed, len(self.pairs)]).weibull(weibull_modulus, len(self.pairs))
-            sizes = sizes * np.clip(drawn / math.gamma(1 + 1 / weibull_modulus), *SCATTER_LIMITS)
+            sizes = sizes * _scatter(weibull_modulus, len(self.pairs), seed)
         within = np.zeros(len(self.pairs), bool)
         if grain_edge:
-            self.grains = grains(self.positions, volume=self.volume, edge=grain_edge, seed=seed, period=self.period)
+            self.grains = grains(self.positions, volumes=self.masses / self.density, edge=grain_edge, seed=seed,
+                                 period=self.period)
             within = self.grains[self.pairs[:, 0]] == self.grains[self.pairs[:, 1]]
             require(law.linear, "grain_edge", grain_edge, f"0 with the law {law.name}, which is linear nowhere", "m")
         kinds = list(zip(sizes.tolist(), self.strength_factor.tolist()))
@@ -442,6 +443,19 @@ class Block(RockAssembly):
 
     def _near(self, positions, radii, gap):
         return packing.contacts(positions, radii, gap + (self.loosened - 1) * (2 * radii.max() + gap))
+
+
+def _scatter(modulus, count, seed):
+    """(count,) strengths over their mean, by Weibull's law of this modulus, drawn within SCATTER_LIMITS of the mean of
+    all of the law and divided by the mean of those.
+
+    With x over the mean of the law and c = Gamma(1 + 1/m), the chance to exceed x is exp(-(c x)^m), and its integral
+    from 0 to x the regularised incomplete gamma function P(1/m, (c x)^m).
+    """
+    factor, limits = math.gamma(1 + 1 / modulus), np.array(SCATTER_LIMITS)
+    low, high = gammainc(1 / modulus, (factor * limits)**modulus)
+    drawn = np.random.default_rng([seed, count]).weibull(modulus, count) / factor
+    return np.clip(drawn, *limits) / (limits[0] + high - low)
 
 
 def _within_grains(law, scaled, kn, kt, strength):

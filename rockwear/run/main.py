@@ -73,6 +73,9 @@ def main(name, declared, make_scene):
     except OSError as error:
         print(f"error: {error}", file=sys.stderr)
         _leave(1)
+    except KeyboardInterrupt:
+        print("stopped before the first step", file=sys.stderr)
+        _leave(128 + signal.SIGINT)
     _leave(run.go())
 
 

@@ -224,6 +224,7 @@ class Cut(Scene):
         for engine in (self.tool.wear_engine, self.tool.profile, self.damping, self.boundary, self.heat):
             if engine:
                 engine.act()
+        self.recorder.close()
         self.energy.close()
         super().end_stage(folder)
         self._set_damping()

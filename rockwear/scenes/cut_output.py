@@ -142,7 +142,7 @@ class CutOutput(Output):
             now = scene.heat.log()
             for name in ("tool_temperature_max", "rock_temperature_max"):
                 # Heat goes on after the last row.
-                found[name] = (float(np.nanmax([*columns[name], now[name][0]])) if name in columns else math.nan, "K")
+                found[name] = float(np.nanmax([*columns.get(name, ()), now[name][0]])), "K"
         return found
 
     def _cracks(self):

@@ -149,7 +149,7 @@ def tool(v):
 
 def stl_tool(v):
     """(outline (k, 2) m from the side, FacetTool) of an STL file."""
-    vertices, facets = read_stl(v.stl)
+    vertices, facets = read_stl(v.stl, most=MOST_FACETS)
     size = np.ptp(vertices, axis=0)
     require(size[0] < v.width and size[2] < v.depth, "stl", f"{v.stl}, {size[0]:g} x {size[1]:g} x {size[2]:g}",
             f"shorter and narrower than the block, {v.width:g} x {v.height:g} x {v.depth:g}", "m")
@@ -159,6 +159,8 @@ def stl_tool(v):
     # Its tip goes where the tooth of the parameters has its own, wherever the file has its origin.
     (x, y), z = tip(vertices), vertices[:, 2]
     vertices, facets = refine(vertices - [x + v.tip_radius, y, 0.5 * (z.min() + z.max())], facets, 1.5 * v.facet)
+    require(len(facets) <= MOST_FACETS, "facet", v.facet, f"so large that {v.stl} is divided into at most "
+            f"{MOST_FACETS} facets: these are {len(facets)}", "m")
     seen = vertices[:, :2]
     return seen[ConvexHull(seen).vertices], FacetTool(vertices=vertices, facets=facets, density=v.tool_density)
 

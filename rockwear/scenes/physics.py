@@ -21,7 +21,7 @@ LOST = 0.1
 """Part of Archard's volume that a rule of removal may lose without a warning."""
 
 
-def _two_digits(value):
+def two_digits(value):
     """A number to two digits, without an exponent where that is usual."""
     return f"{float(f'{value:.2g}'):g}"
 
@@ -43,9 +43,13 @@ class ToolWear:
     def trust(self, tool):
         """{name: (value, unit)}: the two rules for accelerated wear [Rocky], judged from the run's own record, and up
         to which acceleration they and a slow recession of facets (`tool.slow_recession`) are kept."""
-        error, events, trusted = self._by_the_record(tool)
+        error, events, _ = self._by_the_record(tool)
         return {"wear_distribution_error": (error, "-"), "contact_events_per_particle": (events, "-"),
-                "trusted_wear_acceleration": (min(trusted, tool.slow_recession()), "-")}
+                "trusted_wear_acceleration": (self.trusted(tool), "-")}
+
+    def trusted(self, tool):
+        """The acceleration up to which the two rules, where the tool has a profile, and a slow recession are kept."""
+        return min(self._by_the_record(tool)[2] if tool.profile else math.inf, tool.slow_recession())
 
     def _by_the_record(self, tool):
         """(error of the distribution, contact events per particle, acceleration that the two rules allow)."""
@@ -77,9 +81,9 @@ class ToolWear:
             known = f"is known to {100 * error:.2g} %" + " only" * (error > self.tolerance)
         longer = self.acceleration <= max(trusted, 1.0) or self.removal == "none"
         advice = "run longer" if longer else (
-            f"use wear_acceleration = {_two_digits(max(trusted, 1.0))} at most instead of {self.acceleration:g}, and "
-            "run that much longer")
-        goes = f", and {tool.piece} goes in {_two_digits(events)} contact events" if math.isfinite(events) else ""
+            f"use wear_acceleration = {two_digits(max(self.trusted(tool), 1.0))} at most instead of "
+            f"{self.acceleration:g}, and run that much longer")
+        goes = f", and {tool.piece} goes in {two_digits(events)} contact events" if math.isfinite(events) else ""
         return [f"where the tool wears {known}{goes}: to trust the "
                 f"distribution of wear to {100 * self.tolerance:g} %, {advice}"]
 

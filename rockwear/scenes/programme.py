@@ -170,8 +170,6 @@ class StartState:
             scene.programme.window.put_back(self.kept["window"])
             scene.programme.path_start = int(self.kept["path_start"])
         scene.connect_again()
-        # The last of the stage before came after its last record, and is none of this one.
-        scene.tool.contact.take_impulse()
         scene.tool.insert_again()
         if scene.heat:
             scene.heat.replace_rock(self.kept["rock_temperature"])
@@ -227,7 +225,10 @@ class Cycles(Programme):
         self.approach_steps = np.zeros(len(scene.stages), int)
         """Steps of each stage in which the tool comes to the rock: the new one, a worn one to where the new one stood.
         """
-        self.approach_steps[0] = min(scene.steps_in(self.approach / self.velocity), scene.stages[0][1])
+        approach = scene.steps_in(self.approach / self.velocity)
+        for stage, (_, steps) in enumerate(scene.stages):
+            # What the start-up leaves of the way each cycle begins with.
+            self.approach_steps[stage] = min(approach if stage == 0 else max(0, approach - scene.stages[0][1]), steps)
 
     @property
     def working_time(self):
@@ -255,8 +256,9 @@ class Cycles(Programme):
         scene, behind = self.scene, self.foremost_when_new - self.scene.foremost()
         if 0.0 < behind < math.inf:
             name, steps = scene.stages[scene.stage]
-            self.approach_steps[scene.stage] = scene.steps_in(behind / self.velocity)
-            scene.stages[scene.stage] = name, steps + int(self.approach_steps[scene.stage])
+            more = scene.steps_in(behind / self.velocity)
+            self.approach_steps[scene.stage] += more
+            scene.stages[scene.stage] = name, steps + more
 
     def reaches_rock(self):
         return math.isfinite(self.scene.foremost())
@@ -280,13 +282,25 @@ class Cycles(Programme):
 
     def results(self, columns):
         scene, area, working_time = self.scene, self.cut_area(), self.working_time
-        cutting, thrust = (columns.get(f"{name}_force", np.zeros(1)) for name in ("cutting", "thrust"))
         # On its way to the rock the tool meets no force, and that way is no cut.
-        at_work, unit = scene.time / working_time if working_time else 1.0, scene.units.force
-        return {"working_time": (working_time, "s"), "mean_cutting_force": (at_work * float(cutting.mean()), unit),
-                "peak_cutting_force": (float(cutting.max()), unit),
-                "mean_thrust_force": (at_work * float(thrust.mean()), unit),
+        return {"working_time": (working_time, "s"),
+                **forces(columns, scene.units.force, seconds=working_time or scene.time),
                 "specific_energy": (scene.tool.contact.work_done / area if area else 0.0, "J/m3")}
+
+
+def forces(columns, unit, rows=slice(None), seconds=None):
+    """{name: (value, unit)} of mean and peak cutting force and mean thrust in rows of the history, nan without any.
+
+    A row has the mean over the time since the row before. Means are over `seconds`, that of the rows by default.
+    """
+    if not columns:
+        return {name: (math.nan, unit) for name in ("mean_cutting_force", "peak_cutting_force", "mean_thrust_force")}
+    elapsed = np.diff(columns["time"], prepend=0.0)[rows]
+    cutting, thrust = (columns[f"{name}_force"][rows] for name in ("cutting", "thrust"))
+    seconds = seconds or float(elapsed.sum())
+    return {"mean_cutting_force": (float(cutting @ elapsed) / seconds, unit),
+            "peak_cutting_force": (float(cutting.max()), unit),
+            "mean_thrust_force": (float(thrust @ elapsed) / seconds, unit)}
 
 
 class LowerAndCut(Programme):
@@ -316,8 +330,4 @@ class LowerAndCut(Programme):
 
     def results(self, columns):
         cut = columns["stage"] == len(self.ways) - 1 if columns else np.zeros(0, bool)
-        if not cut.any():
-            return {}
-        unit = self.scene.units.force
-        found = {f"mean_{name}": (float(columns[name][cut].mean()), unit) for name in ("cutting_force", "thrust_force")}
-        return {**found, "peak_cutting_force": (float(columns["cutting_force"][cut].max()), unit)}
+        return forces(columns, self.scene.units.force, cut) if cut.any() else {}

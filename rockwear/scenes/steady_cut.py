@@ -40,7 +40,7 @@ class OfTheCut(Presets):
 
     def defaults(self, value, values):
         sizes = cut_sizes(values["depth_of_cut"], value, velocity=values["velocity"],
-                          blunt=4 * values["tip_radius"] + values["wear_flat"])
+                          blunt=4 * values["tip_radius"] + values["wear_flat"], rake=math.radians(values["rake"]))
         return {**sizes, "sampling_period": SAMPLING_PERIOD} if values["tool"] == "particles" else sizes
 
 
@@ -110,8 +110,13 @@ def check_window(v):
             f"{v.window_height:g}", "m")
     require(v.window_ahead >= 4 * v.depth_of_cut, "window_ahead", v.window_ahead,
             f"at least four times depth_of_cut = {v.depth_of_cut:g}: chips are as long", "m")
-    require(v.window_behind >= 2 * v.depth_of_cut, "window_behind", v.window_behind,
-            f"at least twice depth_of_cut = {v.depth_of_cut:g}", "m")
+    blunt = 0.0 if v.outline else v.tip_radius + v.wear_flat
+    require(v.window_behind >= max(2 * v.depth_of_cut, v.depth_of_cut + blunt), "window_behind", v.window_behind,
+            f"at least twice depth_of_cut = {v.depth_of_cut:g}, and it and tip_radius + wear_flat = {blunt:g}", "m")
+    lift = 0.0 if v.outline else v.wear_flat * math.sin(math.radians(v.flat_angle))
+    require(lift <= 0.5 * v.depth_of_cut, "wear_flat", v.wear_flat,
+            f"such that its edge is at most half of depth_of_cut = {v.depth_of_cut:g} above its heel: with "
+            f"flat_angle = {v.flat_angle:g} deg it is {lift:.3g}", "m")
     slab = (v.window_behind + v.window_ahead) / SLABS
     require(slab >= 2 * v.radius_max, "radius_max", v.radius_max,
             f"at most {slab / 2:g}: half of a slab of the window", "m")

@@ -18,6 +18,7 @@ from rockwear.model.contact import PLANE
 from rockwear.model.facet_tool import write_stl
 from rockwear.model.thermal_body import ParticleBody
 from rockwear.scenes import yade_scene
+from rockwear.scenes.physics import two_digits
 from rockwear.scenes.tool_bodies import FacetBodies, SphereBodies, ToolBodies
 
 PROFILE_PERIOD = 10
@@ -330,7 +331,8 @@ class FacetAssembly(ToolAssembly):
         return [*found,
                 f"the face recedes by {recession:.2g} of the way that rock slides on it, away from what presses there: "
                 "less wears than the same work at a lower wear acceleration would. Use wear_acceleration = "
-                f"{self.slow_recession():.2g} at most instead of {self.wear.acceleration:g}, and run that much longer"]
+                f"{two_digits(self.wear.trusted(self))} at most instead of {self.wear.acceleration:g}, and run that "
+                "much longer"]
 
     def write_shape(self, folder):
         if self.units is not PLANE and self._shape_changes():

@@ -3,7 +3,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from rockwear.kernels.conduction import HeatNetwork, hot_and_mean
-from rockwear.scenes.programme import Programme
+from rockwear.scenes.programme import Programme, forces
 
 COOLING_CHUNK = 20
 """Cooling steps between two looks at the clock."""
@@ -78,6 +78,9 @@ class Turns(Programme):
 
     def begin_stage(self, folder):
         scene, self.cooled = self.scene, 0
+        if scene.heat and scene.stage == 1:
+            # The mean heating is of the cuts: nothing heats the pick on its approach.
+            scene.heat.start_average()
         if self.cooling:
             if scene.heat:
                 scene.heat.leave_rock()
@@ -126,14 +129,11 @@ class Turns(Programme):
         return self.chip_area * cuts
 
     def results(self, columns):
-        scene, area, unit = self.scene, self.cut_area(), self.scene.units.force
+        scene, area = self.scene, self.cut_area()
         stage = columns.get("stage", np.zeros(0))
-        cutting = stage % 2 == 1 if (stage % 2 == 1).any() else np.ones(len(stage), bool)
-        forces = {name: columns.get(name, np.zeros(1)) for name in ("cutting_force", "thrust_force")}
-        found = {"working_time": (scene.time, "s"), "peak_cutting_force": (float(forces["cutting_force"].max()), unit),
+        cutting = stage % 2 == 1 if (stage % 2 == 1).any() else slice(None)
+        found = {"working_time": (scene.time, "s"), **forces(columns, scene.units.force, cutting),
                  "specific_energy": (scene.tool.contact.work_done / area if area else 0.0, "J/m3")}
-        for name, force in forces.items():
-            found[f"mean_{name}"] = float(force[cutting].mean() if len(stage) else 0.0), unit
         for n in range(1, self.cycles + 1):
             now = stage == 2 * n - 1
             if now.any():

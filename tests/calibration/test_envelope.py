@@ -24,6 +24,15 @@ def test_fits_of_points_on_a_line():
     assert found["hoek_brown"]["tensile_strength"] < float(curve.sigma1(0.0))
 
 
+def test_what_two_points_do_not_tell_is_no_number():
+    """A line through two points has no confidence interval."""
+    found = envelope.fitted(points(0.0, 5e6), [3e6])
+    assert math.isnan(found["mohr_coulomb"]["cohesion"]["half_width"])
+    assert envelope._numbers(found)["mohr_coulomb"]["cohesion"]["half_width"] is None
+    json.dumps(envelope._numbers(found), allow_nan=False)
+    assert not any("nan" in line for line in envelope.page(found, None) if line.startswith("| simulated"))
+
+
 def test_points_without_a_curve_keep_their_line():
     flat = [{**point, "peak_stress": 30e6 + 0.9 * point["sigma3"]} for point in points(0.0, 5e6, 10e6)]
     found = envelope.fitted(flat)
@@ -47,7 +56,10 @@ def test_the_figure_has_both_fits_of_rock_and_laboratory():
 @pytest.mark.parametrize("words, said", [
     (["--confinements=-1,2"], "confinements = -1 Pa: must be 0 or between 1000 and 1e+09"),
     (["--confinements", "0,5,10"], "confinements = 5 Pa: must be 0 or between"), (["--seeds", "1.5"], "seeds = 1.5"),
-    (["--Rn"], "pairs of --name value"), (["--points", "nowhere.csv"], "points = nowhere.csv: must be a readable CSV")])
+    (["--confinements", "5e6"], "confinements = 5e6 Pa: must be at least two"),
+    (["--confinements", "0,1e6,1000e3"], "confinements = 0,1e6,1000e3: must be each given once"),
+    (["--seeds", "1,2,1"], "seeds = 1,2,1: must be each given once"), (["--Rn"], "pairs of --name value"),
+    (["--points", "nowhere.csv"], "points = nowhere.csv: must be a readable CSV")])
 def test_bad_input_ends_in_one_line_before_the_first_run(tmp_path, capsys, words, said):
     assert envelope.main([str(tmp_path / "out"), *words]) == 2
     lines = capsys.readouterr().err.splitlines()

@@ -68,6 +68,11 @@ def test_errors_count_as_often_as_their_quantity_stands_in_k(tmp_path):
     (_, u), (k, v) = (fit(read(file), law=law)[""]["rows"][0] for law in ("pressure", "dissipation"))
     assert u / k == pytest.approx(np.hypot(0.1, 0.03), rel=1e-12)
     assert v / k == pytest.approx(np.hypot(0.04, 0.03), rel=1e-12)
+    # A pressure that is measured by itself: the force counts with friction alone, whether the pressure has an error.
+    file.write_text("pressure [MPa],force [N],friction [N],distance [m],depth [mm],hardness [MPa],force error [N],"
+                    "friction error [N]\n33,1000,300,500,0.5,5000,100,12\n", encoding="utf-8")
+    (_, u), (k, v) = (fit(read(file), law=law)[""]["rows"][0] for law in ("pressure", "dissipation"))
+    assert np.isnan(u) and v / k == pytest.approx(np.hypot(0.04, 0.1), rel=1e-12)
 
 
 def test_an_error_missing_in_a_row_is_said(tmp_path, capsys):
@@ -117,6 +122,21 @@ def test_command_line_leaves_numbers_and_a_figure(tmp_path, capsys):
     stored = json.loads((tmp_path / "out/wear_fit.json").read_text(encoding="utf-8"))
     assert np.shape(stored["steels"]["MET91"]["k_of_each_test"]) == (2,)
     assert (tmp_path / "out/wear_fit.png").stat().st_size > 1e4
+
+
+@pytest.mark.parametrize("law", ["pressure", "dissipation", "power"])
+def test_the_figure_shows_the_law_through_tests_that_obey_it(law, tmp_path, monkeypatch):
+    """Of two tests, the second with twice the load, depth and friction; friction is twice mu times the force."""
+    file, panels = tmp_path / "tests.csv", []
+    file.write_text("force [N],friction [N],area [mm2],distance [m],depth [mm],hardness [HB]\n1000,600,200,100,1,500\n"
+                    "2000,1200,200,100,2,500\n", encoding="utf-8")
+    canvas = wear_fit.plots.canvas
+    monkeypatch.setattr(wear_fit.plots, "canvas", lambda *size: panels.append(canvas(*size)) or panels[0])
+    wear_fit.draw(fit(read(file), law=law), tmp_path / "drawn.png")
+    (_, (axes,)), = panels
+    points, line = (np.array(one.get_xydata()) for one in axes.lines[::len(axes.lines) - 1])
+    assert len(points) == 2 and np.interp(points[:, 0], *line.T) == pytest.approx(points[:, 1], rel=1e-9)
+    assert axes.get_xlabel().startswith("pressure" if law == "pressure" else "friction stress")
 
 
 @pytest.mark.parametrize("unit, said", [("mm", 0), ("m", 1)])

@@ -26,6 +26,12 @@ def test_outside_the_table_the_end_holds_with_one_warning():
     assert not Hardness.constant(5e9).leaves(1.0, 3000.0)
 
 
+@pytest.mark.parametrize("steel", [MET71, Hardness.constant(5e9)])
+def test_a_temperature_that_is_no_number_has_no_hardness(steel):
+    assert np.isnan(steel.nearest(np.nan))
+    assert np.isnan(steel.nearest([np.nan, 300.0])).tolist() == [True, False]
+
+
 @pytest.mark.parametrize("steel, depth, pressure, celsius, k", [
     (MET71, 1.6e-3, 34e6, 156, 0.0023), (MET71, 1.6e-3, 28.2e6, 146, 0.0028),
     (MET91, 2e-3, 9.1e6, 128, 0.0113), (MET91, 2e-3, 9.0e6, 213, 0.01125)])
@@ -51,6 +57,7 @@ def test_slip_direction_does_not_matter():
 
 @pytest.mark.parametrize("call, name", [
     (lambda: Hardness([0, 0], [1, 2]), "celsius"), (lambda: Hardness([0, 1], [1, -2]), "brinell"),
+    (lambda: Hardness([], []), "celsius"), (lambda: Hardness([-300], [500]), "celsius"),
     (lambda: Hardness([0, 1], [1]), "brinell"), (lambda: Hardness([0, np.nan], [1, 2]), "celsius"),
     (lambda: Hardness.constant(0), "hardness"),
     (lambda: wear_rate(k=-1, pressure=1, slip_velocity=1, hardness=1), "k"),

@@ -1,8 +1,12 @@
 """Sizes of a cut by its depth and the discs in it."""
+import math
+
+import numpy as np
 import pytest
 
 from rockwear.kernels.checks import ParameterError
 from rockwear.kernels.cut_sizes import cut_sizes
+from rockwear.kernels.polygon import tooth
 
 
 @pytest.mark.parametrize("depth", [1e-3, 5e-3, 0.02])
@@ -27,6 +31,18 @@ def test_a_row_is_as_far_from_the_next_at_any_speed_and_a_blunt_tooth_is_wider()
     assert 0.5 * slow["record_period"] == pytest.approx(8.0 * fast["record_period"]) == pytest.approx(5e-5)
     blunt = cut_sizes(5e-3, 8, velocity=8.0, blunt=2e-3)
     assert blunt == pytest.approx({**fast, "tooth_width": fast["tooth_width"] + 2e-3})
+
+
+def test_a_long_flat_has_rock_under_it_and_a_rake_far_below_0_its_tooth():
+    plain = cut_sizes(5e-3, 8, velocity=8.0)
+    long = cut_sizes(5e-3, 8, velocity=8.0, blunt=0.02)
+    assert long == pytest.approx({**plain, "tooth_width": plain["tooth_width"] + 0.02, "window_behind": 0.025})
+    assert cut_sizes(5e-3, 8, velocity=8.0, rake=math.radians(-20)) == plain == cut_sizes(5e-3, 8, velocity=8.0, rake=1)
+    for rake in (math.radians(-40), math.radians(-60)):
+        found = cut_sizes(5e-3, 8, velocity=8.0, rake=rake, blunt=2e-3)
+        outline = tooth(height=found["tooth_height"], width=found["tooth_width"], rake=rake,
+                        clearance=math.radians(5), tip_radius=5e-4)
+        assert np.ptp(outline[:, 0]) == pytest.approx(found["tooth_width"])
 
 
 @pytest.mark.parametrize("depth, discs, velocity, blunt", [

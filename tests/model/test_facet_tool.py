@@ -23,6 +23,21 @@ def test_stl_there_and_back(tmp_path):
     assert volume(*read_stl(tmp_path / "tooth.stl", scale=2.0)) == pytest.approx(8 * volume(*again), rel=1e-12)
 
 
+def test_two_files_of_one_tool_are_the_same(tmp_path):
+    for name in ("tooth.stl", "another name.stl"):
+        write_stl(tmp_path / name, *prism(TOOTH, 0.02, 6e-3))
+    first, second = ((tmp_path / name).read_bytes() for name in ("tooth.stl", "another name.stl"))
+    assert first == second and not first.startswith(b"solid")
+
+
+def test_more_triangles_than_a_tool_may_have_are_refused(tmp_path):
+    write_stl(tmp_path / "tooth.stl", *prism(TOOTH, 0.02, 6e-3))
+    count = len(prism(TOOTH, 0.02, 6e-3)[1])
+    assert len(read_stl(tmp_path / "tooth.stl", most=count)[1]) == count
+    with pytest.raises(ParameterError, match=f"stl = .*tooth.stl, {count} triangles: must be a tool of at most "):
+        read_stl(tmp_path / "tooth.stl", most=count - 1)
+
+
 def test_stl_as_text(tmp_path):
     points = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
     lines = ["solid pick"]

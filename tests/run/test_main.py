@@ -1,5 +1,6 @@
 """What a run does around its scene, seen from outside of its process."""
 import os
+import signal
 import subprocess
 
 import pytest
@@ -18,6 +19,12 @@ def error_of(run):
 
 def test_a_run_listens_on_no_port(tmp_path):
     assert error_of(run_script(SCRIPTS / "ports.py", cwd=tmp_path)) == "error: ports = []: must be listed"
+
+
+def test_a_run_interrupted_while_its_scene_is_made_says_so_and_leaves_nothing(tmp_path):
+    run = run_script(SCRIPTS / "interrupted.py", cwd=tmp_path)
+    assert run.code == 128 + signal.SIGINT and run.stderr.splitlines()[-1] == "stopped before the first step"
+    assert "Traceback" not in run.stderr and not list(tmp_path.iterdir())
 
 
 def test_a_batch_keeps_the_servers_that_its_overview_asks(tmp_path):

@@ -294,6 +294,7 @@ FILES = [
     (1, np.vstack([CUBE[1][:1, ::-1], CUBE[1][1:]]), {}, "must be of one orientation"),
     (1, CUBE[1][:, ::-1], {}, "must be oriented with its normals outwards"),
     (1, np.vstack([CUBE[1], 8 + CUBE[1]]), {}, "2 separate surfaces: must be one piece"),
+    (1, np.tile(CUBE[1], (1700, 1)), {}, "20400 triangles: must be a tool of at most 20000"),
     (1000, CUBE[1], {}, "40 x 40 x 40 m: must be shorter and narrower than the block, 0.28 x 0.1 x 0.16"),
     (0.5, CUBE[1], {}, "height of 0.02 m: must be higher than depth_of_cut = 0.026"),
     (1, CUBE[1], dict(outline="my_tooth.csv"), "must be left out with outline = my_tooth.csv"),

@@ -90,6 +90,8 @@ def test_repeated_turns_rise_and_level_off(turns):
     peak, absorbed, released = table[:, 1], table[:, 4], table[:, 5]
     rise = np.diff(peak)
     assert np.all(rise > 0) and rise[-1] < 0.02 * rise[0]
+    # The heating of the two cuts, without the approach, in which nothing heats the pick.
+    assert absorbed == pytest.approx(history(turns.out)["pick_friction_heat [J/m]"][-1] / 2, rel=1e-3)
     assert released[0] < 0.95 * absorbed[0] and released[-1] == pytest.approx(absorbed[-1], rel=0.03)
 
 

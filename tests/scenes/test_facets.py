@@ -94,8 +94,10 @@ def test_the_segments_cut_and_wear_and_balances_close(worn):
     assert (worn.out / "report.html").stat().st_size > 0
     # At 30,000 times the face recedes faster than rock slides on it, and the run says so.
     assert value(worn, "recession_per_slip") > 1
-    assert any("Use wear_acceleration = " in line and "at most instead of 30000" in line
-               for line in worn.summary["warnings"])
+    said = [float(line.split("se wear_acceleration = ")[1].split(" at most instead of 30000")[0])
+            for line in worn.summary["warnings"] if "se wear_acceleration = " in line]
+    assert said == pytest.approx([value(worn, "trusted_wear_acceleration")] * 2, rel=0.05)
+    assert not any("e+" in line for line in worn.summary["warnings"])
 
 
 def test_the_trusted_acceleration_is_one_at_which_the_face_recedes_slowly(tmp_path):

@@ -207,6 +207,8 @@ NO_ROOM = [
     (dict(discs_per_depth=2), "discs_per_depth = 2: must be 0 or between 4 and 64"),
     (dict(rake=-20, wear_flat=8e-3), "tooth_width = 0.01 m"),
     (dict(rake=-60, wear_flat=1e-3, flat_angle=40), "flat_angle = 40 deg: must be less than 90 degrees plus the rake"),
+    (dict(wear_flat=0.012, tooth_width=0.05), "window_behind = 0.016 m: must be at least"),
+    (dict(wear_flat=6e-3, tooth_width=0.03, flat_angle=40), "wear_flat = 0.006 m: must be such that its edge is"),
     (dict(flat_angle=10), "flat_angle = 10 deg: must be")]
 
 

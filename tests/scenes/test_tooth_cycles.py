@@ -48,6 +48,28 @@ def test_the_rock_breaks_and_the_tool_heats_and_wears(cut):
     assert value(cut, "worn_volume") > 0
 
 
+def test_the_mean_force_is_the_work_over_the_way_however_few_rows_the_record_has(cut, tmp_path):
+    """A record without a row in a stage gets one at its end."""
+    few = tooth_cycles(tmp_path / "few", record_period=1.0, report="false")
+    assert few.code == 0, few.stderr
+    assert history(few.out)["stage [-]"].tolist() == [0, 1]
+    for run in (cut, few):
+        way = 4.0 * value(run, "working_time")
+        assert value(run, "mean_cutting_force") == pytest.approx(
+            run.summary["balances"]["energy"]["tool_work"] / way, rel=1e-9)
+    assert value(few, "mean_thrust_force") == pytest.approx(value(cut, "mean_thrust_force"), rel=1e-9)
+    assert value(few, "tool_temperature_max") == pytest.approx(value(cut, "tool_temperature_max"), abs=0.5)
+
+
+@pytest.mark.parametrize("approach, worked", [(0.02, 0.0), (6e-3, 1e-4)])
+def test_a_free_way_that_the_start_up_does_not_cover_is_no_cut_in_the_cycles(approach, worked, tmp_path):
+    """4.8 mm of start-up, a cycle of 1.6 mm."""
+    run = tooth_cycles(tmp_path / "out", approach=approach, report="false")
+    assert run.code == 0, run.stderr
+    assert value(run, "working_time") == pytest.approx(worked, abs=3 * value(run, "time_step"))
+    assert (run.summary["balances"]["energy"]["tool_work"] > 0) == (worked > 0)
+
+
 def test_energy_balance(cut):
     balance = cut.summary["balances"]["energy"]
     assert balance["tool_work"] > 100

@@ -126,17 +126,21 @@ class SingleMode(WearLaw):
     def scaled(self, factor):
         return self._with([self.k * factor])
 
+    def load(self, test):
+        """((m,) p / H of laboratory tests, p_T / mu for p in the friction forms, its relative standard error)."""
+        pressure, error = (test.pressure, test.pressure_error) if self.force == NORMAL else (
+            test.friction_stress / self.mu, test.friction_error)
+        return pressure / test.hardness, np.hypot(error, test.hardness_error)
+
     def depth_per_k(self, test):
-        """(m,) depth (m) that k = 1 gives in laboratory tests: s (p / H)^n, p_T / mu for p in the friction forms."""
-        pressure = test.pressure if self.force == NORMAL else test.friction_stress / self.mu
-        return test.distance * (self.share * pressure / test.hardness)**self.exponent
+        """(m,) depth (m) that k = 1 gives in laboratory tests: s (p / H)^n, with the load for p / H."""
+        return test.distance * (self.share * self.load(test)[0])**self.exponent
 
     def depths(self, test):
         return [self.depth_per_k(test)]
 
     def error_of(self, test):
-        load = test.pressure_error if self.force == NORMAL else test.friction_error
-        return np.hypot(test.rate_error, self.exponent * np.hypot(load, test.hardness_error))
+        return np.hypot(test.rate_error, self.exponent * self.load(test)[1])
 
     def _with(self, k):
         law = copy(self)

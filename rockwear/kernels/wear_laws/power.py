@@ -35,7 +35,7 @@ class PowerLaw(SingleMode):
         A straight line through log(w / s) over log(p / H), weighted by the errors where all are known. Raises
         ParameterError for fewer than three tests, or equal p / H.
         """
-        load = self.share * test.friction_stress / (self.mu * test.hardness)
+        load = self.share * self.load(test)[0]
 
         def power(k, exponent):
             return PowerLaw(k=k, mu=self.mu, exponent=exponent, share=self.share)

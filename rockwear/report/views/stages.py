@@ -25,15 +25,13 @@ def stages(run):
 
 
 def lost(run, stage):
-    """Part of the tool's mass that is lost by the end of a stage; the last wear comes after the last row of the
-    record."""
+    """Part of the tool's mass that is lost by the end of a stage. In a run that ended before its time the last wear
+    comes after the last row of the record."""
     at_end = stage == run.column("stage")[-1] and math.isfinite(run.result("mass_lost"))
     return run.result("mass_lost") if at_end else run.over_stage("mass_lost", np.max, stage)
 
 
 def mean_at_work(run, name, stage):
     """Mean of a force over the working time of a stage: without the time in which the tool comes to the rock."""
-    mean, worked = run.over_stage(name, np.mean, stage), run.over_stage("working_time", np.ptp, stage)
-    if math.isnan(worked):
-        return mean
-    return mean * run.over_stage("time", np.ptp, stage) / worked if worked else math.nan
+    worked = np.diff(run.column("working_time"), prepend=0.0)[run.column("stage") == stage].sum()
+    return run.mean_over_stage(name, stage, worked if math.isfinite(worked) else None)
