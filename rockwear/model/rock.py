@@ -227,18 +227,19 @@ class RockAssembly:
     def bond(self, law, *, grain_edge=0.0, within_grains=None, grain_strength=0.0, weibull_modulus=0.0, seed=0):
         """Give every bond its law, `laws` (m,), as the rock's law asks for at its place.
 
-        law: of kernels.bond_laws; grain_edge: m, mean edge of grains, 0 for none; within_grains: (kn, kt), N/m, of the
-        bonds within a grain; grain_strength: their strengths over those between grains, 0: they do not break;
-        weibull_modulus: of the scatter of strengths about their mean, 0 for none; seed: of grains and scatter. Raises
-        ParameterError.
+        law: of kernels.bond_laws; grain_edge: m, mean edge of grains among particles of scale 1, and `scale` times that
+        elsewhere, which keeps the strength of the rock, 0 for none; within_grains: (kn, kt), N/m, of the bonds within a
+        grain; grain_strength: their strengths over those between grains, 0: they do not break; weibull_modulus: of the
+        scatter of strengths about their mean, 0 for none; seed: of grains and scatter. Raises ParameterError.
         """
         sizes = self.bond_areas if law.by_area else self.strength_factor
         if weibull_modulus:
             sizes = sizes * _scatter(weibull_modulus, len(self.pairs), seed)
         within = np.zeros(len(self.pairs), bool)
         if grain_edge:
-            self.grains = grains(self.positions, volumes=self.masses / self.density, edge=grain_edge, seed=seed,
-                                 period=self.period)
+            # Seeds are drawn among the particles: where those are coarser, grains are as much larger.
+            finest = float(np.sum(self.masses / self.scale**self.dimensions)) / self.density
+            self.grains = grains(self.positions, volume=finest, edge=grain_edge, seed=seed, period=self.period)
             within = self.grains[self.pairs[:, 0]] == self.grains[self.pairs[:, 1]]
             require(law.linear, "grain_edge", grain_edge, f"0 with the law {law.name}, which is linear nowhere", "m")
         kinds = list(zip(sizes.tolist(), self.strength_factor.tolist()))

@@ -190,11 +190,11 @@ def test_rock_is_not_bonded_across_an_open_crack():
 
 def test_grains_have_no_seam(rock):
     """Shifting the rock by half its period shifts the statistics of the grains: as many grains end at the seam."""
-    numbers = grains(rock.positions, volumes=rock.volume / rock.count, edge=3e-3, seed=1, period=rock.period)
+    numbers = grains(rock.positions, volume=rock.volume, edge=3e-3, seed=1, period=rock.period)
     i, j = rock.pairs.T
     across = rock.crossing != 0
     between = numbers[i] != numbers[j]
-    walled = grains(rock.positions, volumes=rock.volume / rock.count, edge=3e-3, seed=1)
+    walled = grains(rock.positions, volume=rock.volume, edge=3e-3, seed=1)
     assert between[across].mean() < 0.75 < (walled[i] != walled[j])[across].mean()
 
 
