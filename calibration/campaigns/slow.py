@@ -87,9 +87,10 @@ def rows(found):
 
 
 def figure(found):
-    """DRAWN over the speed, a panel each; error bars are standard errors over packings."""
-    drawn, panels = plots.canvas(10, 7, 2, 2)
-    pairs = [(way, heading) for way, headings in DRAWN.items() for heading in headings]
+    """DRAWN over the speed, a panel each, a row a way; error bars are standard errors over packings."""
+    ways = {way: headings for way, headings in DRAWN.items() if any(one == way for _, one in found)}
+    drawn, panels = plots.canvas(10, 3.6 * len(ways), len(ways), 2)
+    pairs = [(way, heading) for way, headings in ways.items() for heading in headings]
     for axes, (way, heading) in zip(panels, pairs):
         of_way = {scene: found[scene, way] for scene in SCENES if (scene, way) in found}
         for scene, colour in zip(SCENES, palette.OTHER_LINES):
@@ -104,7 +105,7 @@ def figure(found):
         axes.set_xticks(present, [f"{speed:g}" for speed in present])
         axes.minorticks_off()
         axes.set_ylim(bottom=0)
-    panels[0].legend()
+    max(panels, key=lambda axes: len(axes.containers)).legend()
     return drawn
 
 
