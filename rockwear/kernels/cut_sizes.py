@@ -3,11 +3,12 @@ import math
 
 from rockwear.kernels.checks import not_negative, positive
 
-DEPTHS = dict(window_behind=2.4, window_ahead=8.0, window_height=6.0, fine_depth=1.6, tooth_height=2.4,
+DEPTHS = dict(window_behind=2.4, window_ahead=8.0, window_height=6.0, fine_depth=2.4, tooth_height=2.4,
               tooth_width=1.6, ramp_length=1.0)
-"""Lengths over the depth of cut. Rock breaks half a depth below the cut, and cracks go a depth further: in a window of
-four depths they reached its bottom. Chips are one to three depths long; with five depths ahead one of them reached the
-end of the window now and then, and the next seam was left unbonded."""
+"""Lengths over the depth of cut. Rock breaks half a depth to a depth below the cut, and cracks go a depth further: in
+a window of four depths they reached its bottom, and in rock that is fine for 1.6 depths alone they ran along the border
+to the coarse rock. Chips are one to three depths long; with five depths ahead one of them reached the end of the window
+now and then, and the next seam was left unbonded."""
 RADII = dict(radius_min=0.8, radius_max=1.2, tool_radius_min=0.64, tool_radius_max=0.768)
 """Radii, times the discs in the depth of cut, over half of it."""
 LARGEST, MOST_GRADING = 0.1875, 8.0
