@@ -177,8 +177,9 @@ def test_depth_of_triangles_is_that_of_their_corners(tmp_path):
 def test_a_stage_without_working_time_has_no_mean_force(tmp_path):
     folder = make_run(tmp_path / "run")
     lines = (folder / "history.csv").read_text(encoding="utf-8").splitlines()
+    end = next(line for line in reversed(lines) if not float(line.split(",")[1])).split(",")[0]
     rows = [lines[0] + ",working_time [s]"] + [
-        line + (",0.002" if float(line.split(",")[1]) else f",{line.split(',')[0]}") for line in lines[1:]]
+        f"{line},{end if float(line.split(',')[1]) else line.split(',')[0]}" for line in lines[1:]]
     (folder / "history.csv").write_text("\n".join(rows) + "\n", encoding="utf-8")
     run = RunFolder(folder)
     assert np.isnan(stages.mean_at_work(run, "cutting_force", 1)) and stages.mean_at_work(run, "cutting_force", 0) > 0
