@@ -27,7 +27,7 @@ def campaign(tmp_path_factory):
             patch.setattr(sharp_and_worn, "SEEDS", SEEDS)
             patch.setattr(sharp_and_worn, "CUT", TINY)
             patch.setattr(sharp_and_worn, "WORN", {
-                **TINY, "rake": sharp_and_worn.RAKE, "seed": packing(1, 4), "wear_acceleration": 5.5e3})
+                **TINY, "rake": sharp_and_worn.RAKE, "seed": packing(1, 4), "wear_acceleration": 2.2e3})
             assert sharp_and_worn.main(folder) == 0
     run()
     return folder, run
