@@ -50,8 +50,8 @@ setup-test: setup
 
 # Wear is accelerated so that the tip wears away within a cut of 60 mm instead of tens of metres.
 run: setup ## cut a sandstone steadily, the tip wearing; report in out/steady_cut/report.html
-	yade -n -x -j1 yade_scripts/steady_cut.py --depth_of_cut 2e-3 --tip_radius 2e-4 --cut_length 0.06 --velocity 8 \
-	  --heat true --wear_acceleration 500 --out "$(OUT)/steady_cut"
+	yade -n -x -j1 yade_scripts/steady_cut.py --depth_of_cut 2e-3 --tip_radius 2e-4 --cut_length 0.05 --velocity 8 \
+	  --heat true --wear_acceleration 200 --out "$(OUT)/steady_cut"
 
 test: setup-test ## all tests
 	$(PYTHON) -m pytest -n 2 --dist loadscope tests
