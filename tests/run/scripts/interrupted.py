@@ -11,4 +11,6 @@ def make_scene(values):
     time.sleep(10)
 
 
+# A shell's background jobs are started with it ignored.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 main("interrupted", [], make_scene)
