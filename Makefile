@@ -48,7 +48,7 @@ setup-sweep: setup ## what many runs at once need too: fits, campaigns and sweep
 setup-test: setup
 	$(call install,$(TO_TEST),pytest xdist distributed)
 
-# Wear is accelerated so that the tip wears away within a cut of 60 mm instead of tens of metres.
+# Wear is accelerated so that the tip wears away within a cut of 50 mm instead of tens of metres.
 run: setup ## cut a sandstone steadily, the tip wearing; report in out/steady_cut/report.html
 	yade -n -x -j1 yade_scripts/steady_cut.py --depth_of_cut 2e-3 --tip_radius 2e-4 --cut_length 0.05 --velocity 8 \
 	  --heat true --wear_acceleration 200 --out "$(OUT)/steady_cut"

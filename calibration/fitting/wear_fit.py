@@ -103,7 +103,7 @@ def _measured(row, mu, brinell):
             require(name in row, name, "nothing", "given in every row without a pressure")
         pressure = row["force"] / row["area"]
     # A pressure without an error of its own, beside an area, is the quotient as well.
-    quotient = "pressure" not in row or ("area" in row and "force" in row and not of["pressure"])
+    quotient = {"force", "area"} <= row.keys() and not of["pressure"]
     pressure_error = np.hypot(of["force"], of["area"]) if quotient else of["pressure"]
     friction, friction_error = mu * pressure, pressure_error
     if "friction" in row:

@@ -23,8 +23,8 @@ def cut_sizes(depth, discs, *, velocity, blunt=0.0, rake=0.0):
     Rock discs have a mean diameter of depth / discs, those of the tool's surface 0.7 of it. depth: m; velocity: m/s;
     blunt: m that a round tip or a wear flat makes the tooth wider, and the window behind it longer where they do not
     fit in with a depth to spare; rake: rad, below 0 the tooth is wider where its back would not lie half a depth behind
-    the tip. Lengths in m, record_period in s, grading_factor
-    without unit. Ours; how a cut depends on it is in calibration/results/steady_cut.md. Raises ParameterError.
+    the tip. Lengths in m, record_period in s, grading_factor without unit. Ours; how a cut depends on it is in
+    calibration/results/steady_cut.md. Raises ParameterError.
     """
     depth, discs = positive("depth_of_cut", depth, "m"), positive("discs_per_depth", discs, "")
     velocity, blunt = positive("velocity", velocity, "m/s"), not_negative("blunt", blunt, "m")

@@ -147,5 +147,5 @@ def write_stl(path, vertices, facets):
     mesh.update_normals()
     with open(path, "wb") as file:
         # numpy-stl's own header has the time and the path: no two files of one tool would be the same.
-        file.write(b"rockwear, m".ljust(80) + np.uint32(len(facets)).astype("<u4").tobytes())
+        file.write(b"rockwear, m".ljust(80) + np.array(len(facets), "<u4").tobytes())
         mesh.data.tofile(file)

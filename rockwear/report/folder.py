@@ -70,10 +70,10 @@ class RunFolder:
         values = values[np.isfinite(values)]
         return float(pick(values)) if len(values) else math.nan
 
-    def mean_over_stage(self, name, stage, seconds=None):
-        """Mean of a column in one stage, whose rows are means since the row before; nan without any. seconds: over
-        which it is taken, those of the rows by default."""
-        rows = (self.column("stage") == stage) & np.isfinite(self.column(name))
+    def mean_over(self, name, rows, seconds=None):
+        """Mean of a column over rows (bool), each of which has the mean since the row before; nan without any.
+        seconds: over which it is taken, those of the rows by default."""
+        rows = rows & np.isfinite(self.column(name))
         elapsed = np.diff(self.column("time"), prepend=0.0)[rows]
         seconds = float(elapsed.sum()) if seconds is None else seconds
         return float(self.column(name)[rows] @ elapsed) / seconds if seconds else math.nan

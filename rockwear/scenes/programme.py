@@ -222,13 +222,12 @@ class Cycles(Programme):
 
     def planned(self):
         scene = self.scene
-        self.approach_steps = np.zeros(len(scene.stages), int)
+        steps, approach = np.array([steps for _, steps in scene.stages]), scene.steps_in(self.approach / self.velocity)
+        # Each cycle begins with what the start-up leaves of the way.
+        left = max(0, approach - int(steps[0]))
+        self.approach_steps = np.minimum([approach, *[left] * (len(steps) - 1)], steps)
         """Steps of each stage in which the tool comes to the rock: the new one, a worn one to where the new one stood.
         """
-        approach = scene.steps_in(self.approach / self.velocity)
-        for stage, (_, steps) in enumerate(scene.stages):
-            # What the start-up leaves of the way each cycle begins with.
-            self.approach_steps[stage] = min(approach if stage == 0 else max(0, approach - scene.stages[0][1]), steps)
 
     @property
     def working_time(self):

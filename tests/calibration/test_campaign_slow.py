@@ -20,7 +20,7 @@ def made_up(folder, runs, force):
 
 
 def of(scene, *speeds):
-    """The runs of slow.plan over the first way, at these speeds."""
+    """The runs of slow.plan over the begin of the way, at these speeds."""
     return {key: run for key, run in slow.plan([scene]).items() if key[1] == slow.BEGIN and key[2] in speeds}
 
 

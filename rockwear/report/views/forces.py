@@ -28,9 +28,7 @@ def figure(run, at_work):
         axes.axvline(time[k], color=palette.GUIDE, linewidth=0.8)
     axes.axhline(0, color=palette.GUIDE, linewidth=0.6)
     draw_forces(run, axes, time, at_work)
-    force = run.column("cutting_force")[at_work]
-    there = np.isfinite(force)
-    mean = np.average(force[there], weights=step[there]) if step[there].any() else np.nan
+    mean = run.mean_over("cutting_force", at_work)
     axes.set(xlabel=f"time of cutting / {unit}", xlim=(0, time[-1]) if time[-1] > 0 else None,
-             title=f"mean cutting force {quantity(float(mean), run.units['cutting_force'])}")
+             title=f"mean cutting force {quantity(mean, run.units['cutting_force'])}")
     return drawn

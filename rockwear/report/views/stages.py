@@ -33,5 +33,6 @@ def lost(run, stage):
 
 def mean_at_work(run, name, stage):
     """Mean of a force over the working time of a stage: without the time in which the tool comes to the rock."""
-    worked = np.diff(run.column("working_time"), prepend=0.0)[run.column("stage") == stage].sum()
-    return run.mean_over_stage(name, stage, worked if math.isfinite(worked) else None)
+    rows = run.column("stage") == stage
+    worked = np.diff(run.column("working_time"), prepend=0.0)[rows].sum()
+    return run.mean_over(name, rows, worked if math.isfinite(worked) else None)

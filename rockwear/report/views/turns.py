@@ -68,7 +68,7 @@ def turn_by_turn(run):
     stage = run.column("stage")
     made, lost = per_cut(run, "pick_friction_heat"), per_cut(run, "pick_heat_worn_away")
     cold = run.parameter("tool_temperature")
-    rows = [(f"turn {n}", quantity(run.mean_over_stage("cutting_force", 2 * n - 1), "N/m"),
+    rows = [(f"turn {n}", quantity(run.mean_over("cutting_force", stage == 2 * n - 1), "N/m"),
              quantity(run.over_stage("tool_temperature_max", np.max, 2 * n - 1), "K"),
              f"{number(run.over_stage('tool_temperature_hot', np.max, 2 * n - 1) - cold)} K",
              quantity(run.over_stage("tool_temperature_max", np.min, 2 * n), "K"),
